@@ -1,0 +1,97 @@
+"""The method's open points, each a named field, settled three ways: TMPUD, PAPER and RELEASED.
+
+The text of the paper leaves these points open; the authors' released research code settles some of them
+differently from the text. ``docs/paper-to-code.md`` says where each field takes effect.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Preset:
+    """One way to settle the open points. Every field has an effect; none is a special case in the code."""
+
+    name: str
+
+    # Utility (Sec. III)
+    gamma: float = 2500.0  # [m] weight of the safety term
+    constant_term: bool = False  # charge every action gamma/2 even where Safe is 1, as the formula literally does
+    turn_cost: float = 0.0  # [m] added for each left or right turn
+
+    # Safety estimation (Algorithm 1)
+    aggregate: Literal["max+mean", "min+mean"] = "min+mean"  # over the instants of the horizon
+    estimated: Literal["every action", "merges"] = "every action"
+    lane_keeping: Literal["all vehicles", "conflicting vehicles"] = "conflicting vehicles"  # judged for non-merges
+    share: Literal["exact", "sampled"] = "exact"
+    samples: int = 1000  # M, used where share is "sampled"
+    safety_distance: float = 8.0  # D [m]
+    closing_weight: float = 1.0  # alpha [s*m]
+    margin: float = 0.0  # eta [m^2/s]
+    gate: float = 0.0  # the set is used where phi >= gate ...
+    gate_rate: float = -math.inf  # ... and phi' > gate_rate
+    strict_gate: bool = False  # phi > gate instead of >=
+    acceleration: tuple[float, float] = (-6.0, 3.0)  # Delta [m/s^2]
+    turning: Literal["steering", "yaw rate"] = "steering"  # what Theta is a range of
+    turning_range: tuple[float, float] = (-0.1, 0.1)  # Theta [rad] or [rad/s]
+    horizon: float | None = 4.0  # T [s]; None: until the goal pose at the first of ``ego_speeds``
+    interval: float = 0.25  # omega [s]
+    sensing_range: float = 30.0  # [m]
+    neighbours: Literal["same level", "target lane"] = "same level"
+    neighbour_heading: float = math.pi  # [rad] vehicles turned further from the ego's heading are not looked at
+    ego_speeds: tuple[float, ...] = ()  # [m/s] constant speeds, the worst counts; empty: the planned profile
+
+    # The loop (Algorithm 2)
+    cost_update: Literal["floored", "current pose", "never"] = "floored"
+    unsafe_fallback: Literal["hold lane", "force"] = "hold lane"  # Threshold with no other plan left
+    safe_expires: float | None = 30.0  # [s] simulated; None: never
+    max_replans: int = 5  # plan changes without motion
+    hysteresis: float = 0.01  # [m] a new plan must be better by at least this
+
+    # States
+    pose: Literal["canonical", "sampled"] = "canonical"
+    segment_length: float = 60.0  # [m] longest segment; inf: one segment per lane
+
+
+TMPUD = Preset(name="tmpud")
+
+PAPER = Preset(
+    name="paper",
+    constant_term=True,
+    aggregate="max+mean",
+    lane_keeping="all vehicles",
+    share="sampled",
+    cost_update="current pose",
+    safe_expires=None,
+    pose="sampled",
+    segment_length=math.inf,
+)
+
+RELEASED = Preset(
+    name="released",
+    turn_cost=25.0,
+    estimated="merges",
+    share="sampled",
+    safety_distance=20.0,
+    gate_rate=-0.5,
+    strict_gate=True,
+    acceleration=(0.0, 10.0),
+    turning="yaw rate",
+    turning_range=(-0.01, 0.01),
+    horizon=None,
+    interval=1.0,
+    neighbours="target lane",
+    neighbour_heading=math.radians(60.0),
+    ego_speeds=(22.0 / 3.6, 26.0 / 3.6),
+    cost_update="never",
+    unsafe_fallback="force",
+    safe_expires=None,
+    max_replans=1000,
+    hysteresis=0.0,
+    segment_length=math.inf,
+)
+
+PRESETS = {preset.name: preset for preset in (TMPUD, PAPER, RELEASED)}

@@ -1,0 +1,199 @@
+"""The road network: lanes cut into segments, their neighbours, and the connections through junctions."""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_right
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from tmpud.geometry import Point, Polyline
+from tmpud.symbols import Action
+
+SEGMENT_LENGTH = 60.0  # [m]
+
+
+@dataclass(frozen=True, slots=True)
+class Lane:
+    """One lane of a road (edge), open to cars."""
+
+    id: str
+    edge: str
+    index: int  # 0 is the rightmost lane of the edge
+    centre: Polyline
+    elevation: tuple[float, ...]  # [m] z at each point of ``centre``
+    width: float  # [m]
+    speed: float  # [m/s] limit
+    change_left: bool = True  # cars may leave it to the left
+    change_right: bool = True
+
+    @property
+    def length(self) -> float:
+        return self.centre.length
+
+    @property
+    def level(self) -> float:
+        """Mean elevation [m]."""
+        return sum(self.elevation) / len(self.elevation)
+
+
+class Segment(NamedTuple):
+    """The part of a lane between two stations; all lanes of a road are cut in the same number of parts."""
+
+    id: str  # "<lane>/<number>", numbered from 0 along the lane
+    lane: str
+    number: int
+    start: float  # [m] station on the lane
+    end: float  # [m]
+
+    @property
+    def middle(self) -> float:
+        return (self.start + self.end) / 2
+
+
+@dataclass(frozen=True, slots=True)
+class LaneConnection:
+    """One permitted way from the end of a lane through a junction to the start of another lane."""
+
+    from_lane: str
+    to_lane: str
+    action: Action  # forward, turnleft or turnright
+    junction: str
+    path: Polyline  # from the end of ``from_lane`` to the start of ``to_lane``
+    internal_lanes: tuple[str, ...]  # the source's ids of the lanes that make up ``path``
+    signal: str | None = None  # id of the light that controls it
+    link: int = -1  # which letter of that light's state is its own
+    priority: str = "M"  # the source's right-of-way letter: M, m, =, s (stop), w (all-way stop), o, O
+    turnaround: bool = False
+    yields_to: tuple[int, ...] = ()  # connections (indices in RoadNetwork.connections) that go first
+    foes: tuple[int, ...] = ()  # connections whose paths it crosses or joins
+
+
+@dataclass(frozen=True, slots=True)
+class Junction:
+    id: str
+    kind: str  # traffic_light, priority, right_before_left, dead_end, ...
+    x: float
+    y: float
+    shape: tuple[Point, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class SignalProgram:
+    id: str
+    offset: float  # [s]
+    phases: tuple[tuple[float, str], ...]  # (duration [s], one letter per link)
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """How the map's coordinates relate to its source's: map = source + offset."""
+
+    offset: Point = (0.0, 0.0)  # [m]
+    projection: str = "!"
+
+
+@dataclass(slots=True)
+class RoadNetwork:
+    """Lanes, lane segments, connections, junctions and signals of one map. Not changed after it is built."""
+
+    name: str
+    lanes: Mapping[str, Lane]
+    connections: tuple[LaneConnection, ...]
+    junctions: Mapping[str, Junction]
+    signals: Mapping[str, SignalProgram]
+    frame: Frame = field(default_factory=Frame)
+    source: str = ""  # the file it was read from
+    digest: str = ""  # sha256 of that file
+    warnings: tuple[str, ...] = ()
+    segment_length: float = SEGMENT_LENGTH  # [m] longest segment; inf: one per lane
+    segments: dict[str, Segment] = field(init=False)
+    edges: dict[str, tuple[str, ...]] = field(init=False)  # edge -> its lanes, rightmost first
+    internal: dict[str, int] = field(init=False)  # lane through a junction -> index of its connection
+    _cuts: dict[str, tuple[Segment, ...]] = field(init=False, repr=False)
+    _outgoing: dict[str, list[int]] = field(init=False, repr=False)
+    _incoming: dict[str, list[int]] = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        by_edge: dict[str, list[Lane]] = {}
+        for lane in self.lanes.values():
+            by_edge.setdefault(lane.edge, []).append(lane)
+        self.edges = {
+            edge: tuple(lane.id for lane in sorted(lanes, key=lambda lane: lane.index))
+            for edge, lanes in by_edge.items()
+        }
+        self._cuts = {}
+        for lanes in by_edge.values():
+            pieces = max(1, math.ceil(max(lane.length for lane in lanes) / self.segment_length - 1e-9))
+            for lane in lanes:
+                self._cuts[lane.id] = tuple(_cut(lane, pieces))
+        self.segments = {segment.id: segment for cut in self._cuts.values() for segment in cut}
+        self._outgoing = {lane: [] for lane in self.lanes}
+        self._incoming = {lane: [] for lane in self.lanes}
+        self.internal = {}
+        for index, connection in enumerate(self.connections):
+            self._outgoing[connection.from_lane].append(index)
+            self._incoming[connection.to_lane].append(index)
+            self.internal.update(dict.fromkeys(connection.internal_lanes, index))
+
+    def segments_of(self, lane: str) -> tuple[Segment, ...]:
+        """Return a lane's segments in driving order."""
+        return self._cuts[lane]
+
+    def segment_at(self, lane: str, station: float) -> Segment:
+        """Return the segment of a lane on which a station lies."""
+        cut = self._cuts[lane]
+        return cut[max(bisect_right(cut, station, key=lambda segment: segment.start) - 1, 0)]
+
+    def ahead(self, segment: str) -> Segment | None:
+        """Return the next segment of the same lane, None at the lane's end."""
+        here = self.segments[segment]
+        cut = self._cuts[here.lane]
+        return cut[here.number + 1] if here.number + 1 < len(cut) else None
+
+    def behind(self, segment: str) -> Segment | None:
+        """Return the segment before it on the same lane, None at the lane's start."""
+        here = self.segments[segment]
+        return self._cuts[here.lane][here.number - 1] if here.number else None
+
+    def beside(self, segment: str, action: Action) -> Segment | None:
+        """Return the segment left (mergeleft) or right (mergeright) of it on the same road, None at its edge."""
+        here = self.segments[segment]
+        neighbour = self.neighbour(here.lane, action)
+        return self._cuts[neighbour.id][here.number] if neighbour else None
+
+    def neighbour(self, lane: str, action: Action) -> Lane | None:
+        """Return the lane left (mergeleft) or right (mergeright) of a lane on the same road."""
+        here = self.lanes[lane]
+        row = self.edges[here.edge]
+        place = row.index(lane) + (1 if action is Action.MERGELEFT else -1)
+        if not 0 <= place < len(row):
+            return None
+        there = self.lanes[row[place]]
+        return there if abs(there.index - here.index) == 1 else None
+
+    def may_change(self, lane: str, action: Action) -> bool:
+        """Whether cars may leave a lane to its left (mergeleft) or right (mergeright)."""
+        here = self.lanes[lane]
+        allowed = here.change_left if action is Action.MERGELEFT else here.change_right
+        return allowed and self.neighbour(lane, action) is not None
+
+    def outgoing(self, lane: str) -> list[LaneConnection]:
+        """Return the connections that start at a lane's end."""
+        return [self.connections[index] for index in self._outgoing[lane]]
+
+    def incoming(self, lane: str) -> list[LaneConnection]:
+        """Return the connections that end at a lane's start."""
+        return [self.connections[index] for index in self._incoming[lane]]
+
+    def locate(self, x: float, y: float) -> tuple[Lane, float, float]:
+        """Return the lane nearest to a point, the station on it and the offset to its left [m]."""
+        found = ((lane, *lane.centre.project(x, y)) for lane in self.lanes.values())
+        return min(found, key=lambda hit: (abs(hit[2]), hit[0].id))
+
+
+def _cut(lane: Lane, pieces: int) -> Iterable[Segment]:
+    for number in range(pieces):
+        start, end = lane.length * number / pieces, lane.length * (number + 1) / pieces
+        yield Segment(f"{lane.id}/{number}", lane.id, number, start, end)

@@ -1,0 +1,34 @@
+"""Trajectories in time, and the prediction of surrounding vehicles (Alg. 1, line 3)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tmpud.scene import FloatArray, Vehicles
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Trajectory:
+    """Where the ego will be: T instants."""
+
+    times: FloatArray  # (T,) [s], relative to the scene, from 0
+    poses: FloatArray  # (T, 3) x, y, heading of the centre of the box
+    speeds: FloatArray  # (T,) [m/s]
+
+
+def predict(others: Vehicles, times: FloatArray) -> FloatArray:
+    """Return the poses (N, T, 3) of N vehicles that keep their speed and yaw rate (Alg. 1, line 3)."""
+    turn = others.yaw_rate[:, None] * times  # (N, T)
+    half = np.where(np.abs(turn) > 1e-9, turn / 2, 1.0)
+    chord = others.speed[:, None] * times * np.where(np.abs(turn) > 1e-9, np.sin(half) / half, 1.0)
+    mid = others.heading[:, None] + turn / 2
+    return np.stack(
+        [
+            others.x[:, None] + chord * np.cos(mid),
+            others.y[:, None] + chord * np.sin(mid),
+            others.heading[:, None] + turn,
+        ],
+        axis=-1,
+    )
