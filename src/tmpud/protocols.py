@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from typing import TYPE_CHECKING, Protocol
 
 from tmpud.symbols import Cost, Safe, ServiceRequest, State, TaskPlan, Transition
 
 if TYPE_CHECKING:
-    from tmpud.scene import Control, Scene
+    from tmpud.scene import Control, FloatArray, Scene
     from tmpud.trajectory import Trajectory
 
 
@@ -31,7 +30,9 @@ class MotionPlanner(Protocol):
         """Return the lanes the transition drives on, in order, those through junctions included."""
         ...
 
-    def trajectory(self, transition: Transition, scene: Scene, times: Iterable[float]) -> Trajectory:
+    def trajectory(
+        self, transition: Transition, scene: Scene, times: FloatArray, speed: float | None = None
+    ) -> Trajectory:
         """Return the ego's planned motion along the transition from where it is in the scene."""
         ...
 
