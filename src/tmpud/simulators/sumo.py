@@ -101,7 +101,12 @@ class SumoSimulator:
 
     def announce(self, roads: Sequence[str]) -> None:
         """Tell the others by which roads the ego means to go on, so that they give way to it at junctions."""
-        self._sumo.vehicle.setRoute(EGO_ID, list(dict.fromkeys(roads)))
+        route = [road for road, before in zip(roads, [None, *roads], strict=False) if road != before]
+        try:
+            self._sumo.vehicle.setRoute(EGO_ID, route)
+        except self._sumo.TraCIException:  # too near the road's end to stop, SUMO wants the route from the next road on
+            if len(route) > 1:
+                self._sumo.vehicle.setRoute(EGO_ID, route[1:])
 
     def everyone(self) -> Vehicles:
         """Return all other vehicles of the town, for pictures and records."""
