@@ -31,8 +31,13 @@ class MotionPlanner(Protocol):
         """Return the lanes the transition drives on, in order, those through junctions included."""
         ...
 
-    def trajectory(self, transition: Transition, scene: Scene, times: Iterable[float]) -> Trajectory:
-        """Return the ego's planned motion along the transition from where it is in the scene."""
+    def trajectory(
+        self, transition: Transition, scene: Scene, times: Iterable[float], speed: float | None = None
+    ) -> Trajectory:
+        """Return the ego's planned motion along the transition from where it is in the scene.
+
+        With a ``speed`` [m/s] it drives the same path at that constant speed, whatever the traffic does.
+        """
         ...
 
     def control(self, scene: Scene) -> Control:
