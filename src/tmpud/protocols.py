@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Protocol
 
 from tmpud.symbols import Cost, Safe, ServiceRequest, State, TaskPlan, Transition
 
 if TYPE_CHECKING:
-    from tmpud.scene import Control, FloatArray, Scene
+    from tmpud.scene import Control, Scene
     from tmpud.trajectory import Trajectory
 
 
@@ -31,9 +32,12 @@ class MotionPlanner(Protocol):
         ...
 
     def trajectory(
-        self, transition: Transition, scene: Scene, times: FloatArray, speed: float | None = None
+        self, transition: Transition, scene: Scene, times: Iterable[float], speed: float | None = None
     ) -> Trajectory:
-        """Return the ego's planned motion along the transition from where it is in the scene."""
+        """Return the ego's planned motion along the transition from where it is in the scene.
+
+        With a ``speed`` [m/s] it drives the same path at that constant speed, whatever the traffic does.
+        """
         ...
 
     def control(self, scene: Scene) -> Control:

@@ -17,6 +17,16 @@ class Trajectory:
     poses: FloatArray  # (T, 3) x, y, heading of the centre of the box
     speeds: FloatArray  # (T,) [m/s]
 
+    @property
+    def accelerations(self) -> FloatArray:
+        """Change of speed (T,) by finite differences [m/s^2]; 0 for a single instant."""
+        return _derivative(self.speeds, self.times)
+
+    @property
+    def yaw_rates(self) -> FloatArray:
+        """Change of heading (T,) by finite differences, the short way round [rad/s]; 0 for a single instant."""
+        return _derivative(np.unwrap(self.poses[:, 2]), self.times)
+
 
 def predict(others: Vehicles, times: FloatArray) -> FloatArray:
     """Return the poses (N, T, 3) of N vehicles that keep their speed and yaw rate (Alg. 1, line 3)."""
@@ -32,3 +42,7 @@ def predict(others: Vehicles, times: FloatArray) -> FloatArray:
         ],
         axis=-1,
     )
+
+
+def _derivative(values: FloatArray, times: FloatArray) -> FloatArray:
+    return np.asarray(np.gradient(values, times)) if len(times) > 1 else np.zeros_like(values)

@@ -1,0 +1,119 @@
+"""The safe control set U_i^S of Algorithm 1, line 5, after the safe-set algorithm of Liu and Tomizuka (2016).
+
+Between the ego E and vehicle i, with dp = p_E - p_i, dv = v_E - v_i, d = |dp| and d' = dp.dv / d::
+
+    phi  = D^2 - d^2 - alpha d'
+    phi' = -2 d d' - alpha d''      d'' = (|dv|^2 + dp.(a_E - a_i) - d'^2) / d
+    U_i^S = {u : phi' <= -eta} where phi >= 0, else all of Delta x Theta
+
+The ego accelerates by a_E = a e + v w n (e ahead, n to its left, yaw rate w), the vehicle by a_i = v_i w_i n_i,
+so phi' is affine in a and w, and U_i^S is Delta x Theta cut by a line.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tmpud.presets import Preset
+from tmpud.scene import FloatArray, Vehicles
+from tmpud.trajectory import Trajectory
+
+TOUCHING = 1e-6  # [m] centres closer than this have no direction between them: no control is safe
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SafetyIndex:
+    """phi, and phi' as an affine function of the ego's control; each field of shape (N, T)."""
+
+    phi: FloatArray  # [m^2]
+    drift: FloatArray  # [m^2/s] phi' of an ego that neither accelerates nor turns; inf where d < TOUCHING
+    by_acceleration: FloatArray  # [m^2/s per m/s^2] c_a
+    by_yaw_rate: FloatArray  # [m^2/s per rad/s] c_w
+
+    def rate(self, acceleration: FloatArray, yaw_rate: FloatArray) -> FloatArray:
+        """Return phi' (N, T) under the controls of T instants."""
+        return self.drift + self.by_acceleration * acceleration + self.by_yaw_rate * yaw_rate
+
+
+class HalfPlane(NamedTuple):
+    """The controls with ``by_acceleration * a + by_turning * x <= limit``, in arrays of one shape.
+
+    x is the yaw rate, or the tangent of the steering angle.
+    """
+
+    limit: FloatArray
+    by_acceleration: FloatArray
+    by_turning: FloatArray
+
+    def at(self, where: NDArray[np.bool_]) -> HalfPlane:
+        """Return the half-planes at which ``where`` is true, in one row."""
+        return HalfPlane(*(values[where] for values in self))
+
+
+class Controls(NamedTuple):
+    """The rectangle Delta x Theta; neither range may be reversed, and Theta must not be a single value."""
+
+    acceleration: tuple[float, float]  # Delta [m/s^2]
+    turning: tuple[float, float]  # Theta [rad] or [rad/s]
+    steering: bool  # whether Theta holds steering angles, else yaw rates
+
+
+def safety_index(ego: Trajectory, others: Vehicles, predicted: FloatArray, preset: Preset) -> SafetyIndex:
+    """Return the index of every predicted vehicle (N, T, 3) at every instant of the ego's trajectory."""
+    ahead, left = _directions(ego.poses[:, 2])
+    ahead_i, left_i = _directions(predicted[..., 2])
+    dp = ego.poses[:, :2] - predicted[..., :2]
+    dv = ego.speeds[:, None] * ahead - others.speed[:, None, None] * ahead_i
+    turning_i = _dot(dp, left_i) * (others.speed * others.yaw_rate)[:, None]  # dp.a_i
+    d = np.hypot(dp[..., 0], dp[..., 1])
+    apart = d >= TOUCHING
+    safe_d = np.where(apart, d, 1.0)
+    d_dot = np.where(apart, _dot(dp, dv) / safe_d, 0.0)
+    drifting = (_dot(dv, dv) - turning_i - d_dot**2) / safe_d  # d'' of an ego that neither accelerates nor turns
+    alpha = preset.closing_weight
+    return SafetyIndex(
+        phi=preset.safety_distance**2 - d**2 - alpha * d_dot,
+        drift=np.where(apart, -2 * d * d_dot - alpha * drifting, np.inf),
+        by_acceleration=np.where(apart, -alpha * _dot(dp, ahead) / safe_d, 0.0),
+        by_yaw_rate=np.where(apart, -alpha * ego.speeds * _dot(dp, left) / safe_d, 0.0),
+    )
+
+
+def in_use(index: SafetyIndex, ego: Trajectory, preset: Preset) -> NDArray[np.bool_]:
+    """Return where (N, T) the gate is open, so that U_i^S is the half-plane and not all of Delta x Theta.
+
+    The gate looks at phi and at phi' under the control that the planned trajectory itself applies.
+    """
+    near = index.phi > preset.gate if preset.strict_gate else index.phi >= preset.gate
+    return near & (index.rate(ego.accelerations, ego.yaw_rates) > preset.gate_rate)
+
+
+def half_plane(index: SafetyIndex, ego: Trajectory, preset: Preset, wheelbase: float) -> HalfPlane:
+    """Return phi' <= -eta as a condition on the preset's controls; w = v tan(theta) / L where they steer."""
+    per_turning = ego.speeds / wheelbase if preset.turning == "steering" else 1.0
+    return HalfPlane(-preset.margin - index.drift, index.by_acceleration, index.by_yaw_rate * per_turning)
+
+
+def controls(preset: Preset) -> Controls:
+    """Return the preset's Delta x Theta; raises ValueError for ranges without the sense ``Controls`` needs."""
+    (low_a, high_a), (low, high) = preset.acceleration, preset.turning_range
+    steering = preset.turning == "steering"
+    if not low_a <= high_a:
+        raise ValueError(f"acceleration {preset.acceleration} must be (low, high)")
+    if not low < high or (steering and not max(-low, high) < np.pi / 2):
+        raise ValueError(f"turning_range {preset.turning_range} must be (low, high), steering within a right angle")
+    return Controls(preset.acceleration, preset.turning_range, steering)
+
+
+def _directions(heading: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return unit vectors (..., 2) ahead and to the left."""
+    cos, sin = np.cos(heading), np.sin(heading)
+    return np.stack([cos, sin], axis=-1), np.stack([-sin, cos], axis=-1)
+
+
+def _dot(a: FloatArray, b: FloatArray) -> FloatArray:
+    return a[..., 0] * b[..., 0] + a[..., 1] * b[..., 1]

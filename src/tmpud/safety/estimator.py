@@ -1,0 +1,126 @@
+"""Algorithm 1, safety estimation: how much freedom an action leaves the controller next to every vehicle."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from tmpud.dynamics import EGO, VehicleLimits
+from tmpud.errors import InfeasibleMotionError, InvalidStateError
+from tmpud.presets import Preset
+from tmpud.protocols import MotionPlanner
+from tmpud.roads.network import RoadNetwork
+from tmpud.safety import control_set, neighbours
+from tmpud.safety.share import exact_share, sampled_share
+from tmpud.scene import FloatArray, Scene, Vehicles
+from tmpud.symbols import Transition
+from tmpud.trajectory import Trajectory, predict
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SafetyEstimate:
+    """Safe(<s, a, s'>) and what it was made of: N vehicles looked at, T instants."""
+
+    safe: float  # min_i o_i*, in [0, 1]; 1.0 without vehicles
+    worst: str | None  # the vehicle that sets it; None where none was looked at
+    min_t: float  # the least o_i(t) of all; 1.0 without vehicles
+    ids: tuple[str, ...]  # (N,)
+    o: FloatArray  # (N, T) o_i(t)
+    o_star: FloatArray  # (N,) o_i*
+    trajectory: Trajectory  # xi^E
+    times: FloatArray  # (T,) [s] relative to the scene
+
+
+class SafeSetEstimator:
+    """The safety estimator of the paper, its open points settled by a preset."""
+
+    def __init__(
+        self, preset: Preset, motion: MotionPlanner, network: RoadNetwork, limits: VehicleLimits = EGO
+    ) -> None:
+        """Raise ValueError where the preset's Delta or Theta is not a range."""
+        self._preset, self._motion, self._network, self._limits = preset, motion, network, limits
+        self._controls = control_set.controls(preset)
+
+    def estimate(self, transition: Transition, scene: Scene, rng: np.random.Generator) -> SafetyEstimate:
+        """Return Safe of an action begun in a scene; the worst of ``ego_speeds`` counts.
+
+        The generator is only drawn from where the preset samples. Raises InvalidStateError for a scene that is not
+        finite, and what the motion planner raises where the action cannot be driven.
+        """
+        _check(scene)
+        # Line 1: x is where the ego is, x' = f(s') ends the action; they set the horizon
+        times = self._instants(transition)
+        # Line 2
+        trajectories = [
+            self._motion.trajectory(transition, scene, times, speed) for speed in self._preset.ego_speeds or (None,)
+        ]
+        others = self._surrounding(transition, scene, trajectories[0])
+        # Line 3
+        predicted = predict(others, times)
+        return min((self._along(ego, others, predicted, rng) for ego in trajectories), key=lambda e: (e.safe, e.min_t))
+
+    def _along(
+        self, ego: Trajectory, others: Vehicles, predicted: FloatArray, rng: np.random.Generator
+    ) -> SafetyEstimate:
+        # Lines 4 and 8: for each vehicle V_i, all in one array
+        # Line 5
+        index = control_set.safety_index(ego, others, predicted, self._preset)
+        # Line 6
+        o = self._share(index, ego, rng)
+        # Line 7
+        o_star = aggregate(o, self._preset)
+        # Line 9
+        return _least(o, o_star, others.ids, ego)
+
+    def _instants(self, transition: Transition) -> FloatArray:
+        """Return t = t_1 + omega i over the horizon (Alg. 1, line 5), relative to t_1."""
+        horizon = self._preset.horizon
+        if horizon is None:
+            length = self._motion.path_length(transition)
+            if not math.isfinite(length):
+                raise InfeasibleMotionError(f"{transition} cannot be driven, so it has no horizon")
+            horizon = length / (self._preset.ego_speeds or (self._limits.max_speed,))[0]
+        count = math.floor(horizon / self._preset.interval + 1e-9) + 1
+        return np.arange(count, dtype=np.float64) * self._preset.interval
+
+    def _surrounding(self, transition: Transition, scene: Scene, ego: Trajectory) -> Vehicles:
+        near = neighbours.perceived(self._preset, self._network, transition, scene)
+        if transition.action.is_merge or self._preset.lane_keeping == "all vehicles":
+            return near
+        lanes = self._motion.lanes(transition)
+        near = neighbours.conflicting(near, scene.ego.lane, lanes, self._network)
+        return neighbours.crossing(near, ego, self._limits.width)
+
+    def _share(self, index: control_set.SafetyIndex, ego: Trajectory, rng: np.random.Generator) -> FloatArray:
+        """Return o_i(t) (N, T): 1 where the gate is shut, else the share of safe controls."""
+        o = np.ones_like(index.phi)
+        used = control_set.in_use(index, ego, self._preset)
+        plane = control_set.half_plane(index, ego, self._preset, self._limits.wheelbase).at(used)
+        if self._preset.share == "sampled":
+            o[used] = sampled_share(plane, self._controls, self._preset.samples, rng)
+        else:
+            o[used] = exact_share(plane, self._controls)
+        return o
+
+
+def aggregate(o: FloatArray, preset: Preset) -> FloatArray:
+    """Return o_i* (N,) of o_i(t) (N, T): the paper's (max + mean)/2, or (min + mean)/2."""
+    extreme = o.max(axis=1) if preset.aggregate == "max+mean" else o.min(axis=1)
+    return np.asarray((extreme + o.mean(axis=1)) / 2)
+
+
+def _least(o: FloatArray, o_star: FloatArray, ids: tuple[str, ...], ego: Trajectory) -> SafetyEstimate:
+    """Return min_i o_i* with its vehicle (Alg. 1, line 9)."""
+    if not ids:
+        return SafetyEstimate(1.0, None, 1.0, ids, o, o_star, ego, ego.times)
+    worst = int(o_star.argmin())
+    return SafetyEstimate(float(o_star[worst]), ids[worst], float(o.min()), ids, o, o_star, ego, ego.times)
+
+
+def _check(scene: Scene) -> None:
+    ego, others = scene.ego, scene.others
+    values = (others.x, others.y, others.z, others.heading, others.speed, others.yaw_rate, others.width)
+    if not all(np.isfinite(column).all() for column in (np.array([*ego.pose, ego.z, ego.speed]), *values)):
+        raise InvalidStateError(f"the scene at {scene.time} s holds a value that is not finite")

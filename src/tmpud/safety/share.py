@@ -1,0 +1,84 @@
+"""How much of Delta x Theta a half-plane holds (Alg. 1, line 6): in closed form, or by sampling as the paper does.
+
+For a fixed turn x the safe accelerations are a clipped line, so the share is the mean over theta of
+``clip((slack - c x) / span, 0, 1)`` with c = ``by_turning`` and span = ``|by_acceleration|`` times the width of Delta.
+It is 1 up to one turn (``full``), 0 beyond another (``none``), and the integral of a line between the two:
+breakpoints are arctangents and the antiderivative of the tangent is -ln cos where theta is a steering angle.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tmpud.safety.control_set import Controls, HalfPlane
+from tmpud.scene import FloatArray
+
+_CHUNK = 1 << 20  # samples held in memory at once
+
+
+def exact_share(plane: HalfPlane, controls: Controls) -> FloatArray:
+    """Return the share of the controls in each half-plane, an array of the planes' shape.
+
+    Where neither control has an effect, it is 1 or 0 as the limit is met or not.
+    """
+    low_a, high_a = controls.acceleration
+    slack = plane.limit - np.minimum(plane.by_acceleration * low_a, plane.by_acceleration * high_a)
+    span = np.abs(plane.by_acceleration) * (high_a - low_a)
+    slope = np.abs(plane.by_turning)
+    low, high = _mirrored(controls.turning, plane.by_turning < 0)
+    full = np.clip(_turn_at(slack - span, slope, controls.steering), low, high)
+    none = np.clip(_turn_at(slack, slope, controls.steering), low, high)
+    partial = _partial(full, none - full, slack, slope, span, controls.steering)
+    return np.clip((full - low + partial) / (high - low), 0.0, 1.0)
+
+
+def sampled_share(plane: HalfPlane, controls: Controls, samples: int, rng: np.random.Generator) -> FloatArray:
+    """Return the share of ``samples`` fresh random controls for each half-plane, an array of the planes' shape."""
+    flat = HalfPlane(*(np.ravel(values) for values in plane))
+    rows = max(1, _CHUNK // samples)
+    counts = [
+        _count(HalfPlane(*(values[at : at + rows, None] for values in flat)), controls, samples, rng)
+        for at in range(0, flat.limit.size, rows)
+    ]
+    return np.asarray(np.concatenate([np.zeros(0), *counts]).reshape(plane.limit.shape) / samples)
+
+
+def _count(rows: HalfPlane, controls: Controls, samples: int, rng: np.random.Generator) -> FloatArray:
+    """Return how many of the samples lie in each half-plane; the planes' shape is (K, 1)."""
+    (low_a, high_a), (low, high) = controls.acceleration, controls.turning
+    unit = rng.random((rows.limit.size, samples, 2))
+    acceleration, turn = low_a + (high_a - low_a) * unit[..., 0], low + (high - low) * unit[..., 1]
+    effect = np.tan(turn) if controls.steering else turn
+    inside = rows.by_acceleration * acceleration + rows.by_turning * effect <= rows.limit
+    return np.asarray(np.sum(inside, axis=1, dtype=np.float64))
+
+
+def _mirrored(turning: tuple[float, float], flip: NDArray[np.bool_]) -> tuple[FloatArray, FloatArray]:
+    """Return Theta's ends, mirrored where turning left helps, so that the share always falls with the turn."""
+    low, high = turning
+    return np.where(flip, -high, low), np.where(flip, -low, high)
+
+
+def _turn_at(slack: FloatArray, slope: FloatArray, steering: bool) -> FloatArray:
+    """Return the turn at which ``slope * x`` uses up the slack; beyond all turns where there is no slope."""
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        effect = np.where(slope > 0, slack / slope, np.where(slack >= 0, np.inf, -np.inf))
+    return np.arctan(effect) if steering else effect
+
+
+def _partial(
+    full: FloatArray, width: FloatArray, slack: FloatArray, slope: FloatArray, span: FloatArray, steering: bool
+) -> FloatArray:
+    """Return the integral of ``(slack - slope x) / span`` over theta from ``full`` on over ``width``.
+
+    log1p keeps the difference of two logarithms precise where the width is tiny.
+    """
+    start = np.tan(full) if steering else full
+    if steering:
+        rise = -np.log1p(-2 * np.sin(width / 2) ** 2 - start * np.sin(width)) - start * width
+    else:
+        rise = width**2 / 2  # integral of x - x(full)
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        line = np.clip((slack - slope * start) / span, 0.0, 1.0) * width - slope / span * rise
+    return np.where((width > 1e-15) & (span > 0), line, 0.0)
