@@ -42,10 +42,8 @@ class Planned(Event):
     plan: TaskPlan
     cost: tuple[float, ...]  # [m] per transition
     penalty: tuple[float, ...]  # [m] per transition
-    optimal: bool  # proved by the solver
     alternatives: tuple[tuple[TaskPlan, float, float], ...]  # (plan, cost [m], penalty [m])
     reason: str  # "start", or what made it plan anew
-    changed: bool  # whether it differs from the plan before
 
     @property
     def cost_m(self) -> float:
@@ -84,8 +82,8 @@ class Executed(Event):
 
     step: Transition
     outcome: str
-    estimated: bool  # whether an estimate of this snapshot preceded it
-    distance: float  # [m] driven so far
+    estimated: bool  # whether an estimate of the snapshot it began in preceded it
+    distance: float  # [m] driven since the start
 
 
 @dataclass(frozen=True, slots=True)
