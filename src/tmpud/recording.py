@@ -37,15 +37,17 @@ def record_timing(stopwatch: Stopwatch, folder: Path) -> None:
 def read_run(folder: Path) -> Iterator[Event]:
     """Yield a run's events; RunFileError names the line that cannot be read."""
     path = folder / LOG
-    number = 0
+    read = 0  # lines
     try:
         with gzip.open(path, "rt", encoding="utf-8") as log:
-            for number, line in enumerate(log, 1):
-                yield from_json(json.loads(line))
+            for line in log:
+                event = from_json(json.loads(line))
+                read += 1
+                yield event
     except FileNotFoundError as error:
         raise RunFileError(f"{path}: no such run; a run folder holds {LOG}") from error
     except (OSError, EOFError, ValueError, RunFileError) as error:
-        raise RunFileError(f"{path}:{number + (not isinstance(error, RunFileError))}: {error}") from error
+        raise RunFileError(f"{path}:{read + 1}: {error}") from error
 
 
 def _line(row: dict[str, object]) -> bytes:

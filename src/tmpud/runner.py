@@ -98,7 +98,7 @@ def drive(
     town = simulator(network, mission)
     try:
         rng = np.random.default_rng(mission.seed)
-        world = SimulatedWorld(network, town, motion, estimator, judge, rng, frames=frames)
+        world = SimulatedWorld(network, town, mapping, motion, estimator, judge, rng, frames=frames)
         domain = Domain(network, request)
         start = domain.start_state()
         world.enter(*mapping(start))

@@ -26,7 +26,9 @@ class Story:
                 self._plans += 1
                 return [clock + line for line in _plan_lines(event, plan_name(self._plans - 1))]
             case Estimated(step=step, safe=safe, worst=worst):
-                return [f"{clock}estimate  {said(step)}: Safe = {safe:.2f}" + (f"  (nearest risk {worst})" if worst else "")]
+                return [
+                    f"{clock}estimate  {said(step)}: Safe = {safe:.2f}" + (f"  (nearest risk {worst})" if worst else "")
+                ]
             case Refused(step=step, reason=reason):
                 return [f"{clock}refused   {said(step)}: {reason}"]
             case Executed(step=step, outcome=outcome, distance=distance):

@@ -11,6 +11,7 @@ import numpy as np
 from tmpud.errors import InfeasibleMotionError
 from tmpud.events import Event, Frame, Judged
 from tmpud.execution.guard import Guard
+from tmpud.motion.mapping import StateMapping
 from tmpud.motion.planner import LaneMotionPlanner
 from tmpud.protocols import Judge, SafetyEstimator, Simulator
 from tmpud.roads.network import RoadNetwork
@@ -19,6 +20,7 @@ from tmpud.scene import Outcome, Scene, Vehicles, VehicleState
 from tmpud.symbols import TaskPlan, Transition
 
 FRAME_INTERVAL = 0.1  # [s]
+AT_POSE = 0.5  # [m]
 MOVING = 0.1  # [m/s] slower than this is standing
 
 
@@ -37,6 +39,7 @@ class SimulatedWorld:
         self,
         network: RoadNetwork,
         simulator: Simulator,
+        mapping: StateMapping,
         motion: LaneMotionPlanner,
         estimator: SafetyEstimator,
         judge: Judge,
@@ -46,7 +49,7 @@ class SimulatedWorld:
         limits: Limits | None = None,
     ) -> None:
         """``rng`` feeds estimates that sample; ``frames`` says whether ``execute`` yields what can be seen."""
-        self._network, self._simulator, self._motion = network, simulator, motion
+        self._network, self._simulator, self._mapping, self._motion = network, simulator, mapping, motion
         self._estimator, self._judge, self._rng = estimator, judge, rng
         self._frames, self._limits = frames, limits or Limits()
         self._guard = Guard()
@@ -65,8 +68,13 @@ class SimulatedWorld:
         return self.scene.time
 
     def path_length(self, step: Transition) -> float:
-        """Return A*(x, x') from where the ego is [m]; inf where it cannot be driven."""
-        return self._motion.path_length_from(self._motion.where(self.scene, step), step)
+        """Return A*(x, x') from where the ego is [m]; inf where it cannot be driven.
+
+        Within AT_POSE of f(s) that is the length from f(s), so that a step's overshoot decides between no two plans.
+        """
+        here, canonical = self._motion.where(self.scene, step), self._mapping(step.state)
+        start = canonical if abs(here.station - canonical.station) < AT_POSE else here
+        return self._motion.path_length_from(start, step)
 
     def estimate(self, step: Transition) -> SafetyEstimate:
         """Return Algorithm 1's estimate for the present snapshot; asked twice, it is the same one."""

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from tmpud.dynamics import EGO, VehicleLimits
 from tmpud.errors import InfeasibleMotionError
 from tmpud.motion.drive import Drive
 from tmpud.motion.mapping import RoadPoint, StateMapping
-from tmpud.motion.path import MERGE_LENGTH, SHORTEST_MERGE, Cross, Follow, Move, find_path
+from tmpud.motion.path import Cross, Follow, Move
+from tmpud.motion.path_planner import PathPlanner
 from tmpud.motion.right_of_way import RightOfWay
 from tmpud.motion.route import Route, build_route
 from tmpud.roads.network import RoadNetwork
@@ -22,60 +21,28 @@ REACHED = 0.15  # [m] the goal pose counts as reached this much before it
 BEYOND = 60.0  # [m] how far the route goes on after the goal pose
 
 
-class LaneMotionPlanner:
+class LaneMotionPlanner(PathPlanner):
     """Plans and drives one transition at a time on the lanes of a road network."""
 
     def __init__(
         self, network: RoadNetwork, mapping: StateMapping, limits: VehicleLimits = EGO, dt: float = 0.05
     ) -> None:
-        self._network, self._mapping, self._limits, self._dt = network, mapping, limits, dt
+        super().__init__(network, mapping)
+        self._limits, self._dt = limits, dt
         self._right_of_way = RightOfWay(network)
         self._drive: Drive | None = None
-
-    # The path planner ------------------------------------------------------------------------------------------
-
-    def path_length(self, transition: Transition) -> float:
-        """Return A*(x, x') between f(s) and f(s') [m]; inf where no path does this action."""
-        return self.path_length_from(self._mapping(transition.state), transition)
-
-    def path_length_from(self, here: RoadPoint, transition: Transition) -> float:
-        """Return A*(x, x') from where the ego is [m]; inf where no path does this action."""
-        moves = self._moves(here, transition)
-        return math.inf if moves is None else sum(move.length for move in moves)
-
-    def lanes(self, transition: Transition) -> tuple[str, ...]:
-        """Return the lanes the transition drives on, in order, those through junctions included."""
-        moves = self._moves(self._mapping(transition.state), transition) or ()
-        found: list[str] = []
-        for move in moves:
-            found += move.connection.internal_lanes if isinstance(move, Cross) else [move.lane.id]
-        return tuple(found)
 
     def where(self, scene: Scene, transition: Transition) -> RoadPoint:
         """Return the point of the transition's first lane beside which the ego is."""
         lane = self._network.segments[transition.state.segment].lane
         return RoadPoint(lane, self._network.lanes[lane].centre.project(scene.ego.pose.x, scene.ego.pose.y)[0])
 
-    def _moves(self, here: RoadPoint, transition: Transition) -> tuple[Move, ...] | None:
-        return find_path(self._network, here, self._goal(here, transition), transition.action)
-
-    def _goal(self, here: RoadPoint, transition: Transition) -> RoadPoint:
-        """Return x' = f(s'); where lanes are not cut, a merge goes to the nearest pose that it can reach."""
-        goal = self._mapping(transition.next_state)
-        if not (transition.action.is_merge and math.isinf(self._network.segment_length)):
-            return goal
-        lane = self._network.lanes[goal.lane]
-        ratio = lane.length / self._network.lanes[here.lane].length
-        if goal.station - here.station * ratio >= SHORTEST_MERGE:
-            return goal
-        return RoadPoint(goal.lane, min((here.station + MERGE_LENGTH) * ratio, lane.length - self._limits.length))
-
     def _route(self, scene: Scene, transition: Transition, upcoming: TaskPlan) -> Route:
         here = self.where(scene, transition)
-        moves = self._moves(here, transition)
+        moves = self.moves(here, transition)
         if moves is None:
             raise InfeasibleMotionError(f"no path does {transition.action} from {here.lane} at {here.station:.1f} m")
-        goal = self._goal(here, transition)
+        goal = self.goal(here, transition)
         return build_route(self._network, moves, self._beyond(goal, upcoming), self._limits)
 
     def _beyond(self, goal: RoadPoint, upcoming: TaskPlan) -> list[Move]:

@@ -15,7 +15,7 @@ from tmpud.roads.network import RoadNetwork
 from tmpud.scene import FloatArray
 
 SPACING = 0.5  # [m] between the points of a route
-SMOOTHING = 3.0  # [m] length of the running mean that takes the corners off a map's polylines
+SMOOTHING = 2.0  # [m] length of the running mean that takes the corners off a map's polylines
 COMFORTABLE_BRAKING = 2.0  # [m/s^2]
 
 

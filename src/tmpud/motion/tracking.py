@@ -51,10 +51,10 @@ class Tracker:
         return Control(self._accelerate(ego, wish, dt), self._steer(ego, station, offset, dt))
 
     def _steer(self, ego: VehicleState, station: float, offset: float, dt: float) -> float:
-        ahead = self.route.index(station + 0.1 * ego.speed)
-        forward = math.atan(self._limits.wheelbase * float(self.route.curvature[ahead]))
+        here = self.route.index(station)
+        forward = math.atan(self._limits.wheelbase * float(self.route.curvature[here]))
         slip = math.atan(math.tan(forward) / 2)  # the box's centre moves at this angle to its heading
-        heading_error = wrap_angle(float(self.route.headings[ahead]) - slip - ego.pose.heading)
+        heading_error = wrap_angle(float(self.route.headings[here]) - slip - ego.pose.heading)
         steering = forward + 0.8 * heading_error + self._lateral(-offset, dt)
         return clamp(steering, -self._limits.max_steering, self._limits.max_steering)
 
