@@ -26,6 +26,9 @@ asp_app = typer.Typer(help="Look at the task planner's program.", no_args_is_hel
 app.add_typer(map_app, name="map")
 app.add_typer(asp_app, name="asp")
 
+TOWN = "millbrook"
+DEMO_SEED = 7
+
 Map = Annotated[str, typer.Option("--map", "-m", help="A shipped town's name or a .net.xml(.gz) file.")]
 From = Annotated[str, typer.Option("--from", help="Start: a lane or edge id, x,y in map coordinates, or random.")]
 To = Annotated[str, typer.Option("--to", help="Goal, like --from.")]
@@ -40,17 +43,13 @@ Beta = Annotated[float, typer.Option(min=0.0, max=1.0, help="The least Safe that
 
 
 @app.command()
-def demo(seed: Seed | None = None, out: Out = None) -> None:
+def demo(seed: Seed = DEMO_SEED, out: Out = None) -> None:
     """Drive the shipped town's paper mission in traffic and tell the story."""
-    from tmpud.roads.towns import DEMO_SEED, PAPER_MISSION
+    from tmpud.roads.towns import PAPER_MISSIONS
     from tmpud.runner import Mission
 
-    mission = Mission(
-        map=PAPER_MISSION.town,
-        start=PAPER_MISSION.start,
-        goal=PAPER_MISSION.goal,
-        seed=DEMO_SEED if seed is None else seed,
-    )
+    paper = PAPER_MISSIONS[TOWN]
+    mission = Mission(map=TOWN, start=paper.start, goal=paper.goal, seed=seed)
     _drive(mission, out or Path("runs/demo"), as_json=False)
 
 
@@ -58,7 +57,7 @@ def demo(seed: Seed | None = None, out: Out = None) -> None:
 def drive(
     start: From,
     goal: To,
-    map_: Map = "millbrook",
+    map_: Map = TOWN,
     via: Via = None,
     algorithm: Algorithm = "tmpud",
     beta: Beta = 0.3,
@@ -89,6 +88,7 @@ def drive(
 def _drive(mission: Mission, folder: Path, *, as_json: bool) -> None:
     from tmpud.events import Event
     from tmpud.execution.timing import Stopwatch
+    from tmpud.presets import preset_named
     from tmpud.recording import read_run, record, record_timing
     from tmpud.roads.loading import load_map
     from tmpud.runner import drive as run
@@ -103,7 +103,7 @@ def _drive(mission: Mission, folder: Path, *, as_json: bool) -> None:
             for line in story.tell(event):
                 typer.echo(line)
     record_timing(watch, folder)
-    draw_run(load_map(mission.map, mission.settings().segment_length), events, folder / "map.png")
+    draw_run(load_map(mission.map, preset_named(mission.preset).segment_length), events, folder / "map.png")
     summary = summarise(events) | {"latency_ms": watch.summary()}
     if as_json:
         typer.echo(json.dumps(summary))
@@ -116,7 +116,7 @@ def _drive(mission: Mission, folder: Path, *, as_json: bool) -> None:
 def plan(
     start: From,
     goal: To,
-    map_: Map = "millbrook",
+    map_: Map = TOWN,
     via: Via = None,
     seed: Seed = 7,
     preset: PresetName = "tmpud",
@@ -144,7 +144,7 @@ def plan(
 
 
 @map_app.command("info")
-def map_info(map_: Annotated[str, typer.Argument(metavar="MAP")] = "millbrook", as_json: Json = False) -> None:
+def map_info(map_: Annotated[str, typer.Argument(metavar="MAP")] = TOWN, as_json: Json = False) -> None:
     """Print what a map offers: segments, lanes, junctions, signals, transitions by action, warnings."""
     from dataclasses import asdict
 
@@ -166,7 +166,7 @@ def map_info(map_: Annotated[str, typer.Argument(metavar="MAP")] = "millbrook", 
 def asp_dump(
     start: From,
     goal: To,
-    map_: Map = "millbrook",
+    map_: Map = TOWN,
     via: Via = None,
     seed: Seed = 7,
     preset: PresetName = "tmpud",

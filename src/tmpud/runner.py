@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from tmpud.errors import InvalidStateError, NoPlanError, RequestError
+from tmpud.errors import InvalidStateError, NoPlanError
 from tmpud.events import Event, Finished, Header
 from tmpud.execution.baselines import communication
 from tmpud.execution.deliberation import Deliberation
@@ -20,7 +20,7 @@ from tmpud.execution.worlds import SimulatedWorld
 from tmpud.judging.judge import Judge
 from tmpud.motion.mapping import StateMapping
 from tmpud.motion.planner import LaneMotionPlanner
-from tmpud.presets import PRESETS, Preset
+from tmpud.presets import Preset, preset_named
 from tmpud.protocols import Simulator
 from tmpud.roads.loading import load_map
 from tmpud.roads.network import RoadNetwork
@@ -54,12 +54,6 @@ class Mission:
     seed: int = 7
     preset: str = "tmpud"
 
-    def settings(self) -> Preset:
-        """Return the preset by its name; RequestError for an unknown one."""
-        if self.preset not in PRESETS:
-            raise RequestError(f"no preset is called {self.preset!r}; there are {', '.join(PRESETS)}")
-        return PRESETS[self.preset]
-
 
 SimulatorFactory = Callable[[RoadNetwork, Mission], Simulator]
 
@@ -82,7 +76,7 @@ def drive(
 
     The same mission gives the same events. Raises MapError, RequestError or SimulatorError for what cannot be run.
     """
-    preset = mission.settings()
+    preset = preset_named(mission.preset)
     communicate = communication(mission.algorithm, mission.beta)
     network = load_map(mission.map, preset.segment_length)
     request = service_request(network, mission.start, mission.goal, mission.via, mission.seed)

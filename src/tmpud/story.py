@@ -102,3 +102,21 @@ def _plan_summary(event: Planned) -> dict[str, Any]:
         "cost_m": round(event.cost_m, 2),
         "penalty_m": round(event.penalty_m, 2),
     }
+
+
+def closing(summary: dict[str, Any]) -> list[str]:
+    """Return the table that ends a story."""
+    rows = [
+        ("status", summary["status"]),
+        ("distance", f"{summary['distance_m']:.0f} m"),
+        ("travel time", f"{summary['travel_time_s']:.0f} s"),
+        ("collisions", summary["collisions"]),
+        ("forced stops", summary["forced_stops"]),
+        ("rules broken", summary["violations"]),
+        ("replans", summary["replans"]),
+    ]
+    rows += [
+        (f"{kind} latency", f"median {ms['median']:.2f} ms, max {ms['max']:.2f} ms, n = {ms['n']:.0f}")
+        for kind, ms in summary["latency_ms"].items()
+    ]
+    return ["", *(f"  {name:<18}{value}" for name, value in rows)]
