@@ -34,7 +34,9 @@ From = Annotated[str, typer.Option("--from", help="Start: a lane or edge id, x,y
 To = Annotated[str, typer.Option("--to", help="Goal, like --from.")]
 Via = Annotated[list[str] | None, typer.Option("--via", help="A place on the way; repeat for more, in their order.")]
 Seed = Annotated[int, typer.Option(help="Seed of random places, traffic and sampling.")]
-PresetName = Annotated[str, typer.Option("--preset", help="How the method's open points are settled: tmpud, paper or released.")]
+PresetName = Annotated[
+    str, typer.Option("--preset", help="How the method's open points are settled: tmpud, paper or released.")
+]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")]
 Out = Annotated[Path | None, typer.Option(help="The run folder to write; default: runs/<name>.")]
 Traffic = Annotated[int, typer.Option(min=0, help="How many other vehicles circulate.")]
@@ -65,6 +67,7 @@ def drive(
     seed: Seed = 7,
     preset: PresetName = "tmpud",
     out: Out = None,
+    frames: Annotated[bool, typer.Option(help="Record what can be seen, ten times a second.")] = True,
     as_json: Json = False,
 ) -> None:
     """Drive a service request in SUMO's traffic, judge it, and write a run folder."""
@@ -82,14 +85,14 @@ def drive(
         preset=preset,
     )
     name = f"{algorithm}-{seed}"
-    _drive(mission, out or Path("runs") / name, as_json=as_json)
+    _drive(mission, out or Path("runs") / name, as_json=as_json, frames=frames)
 
 
-def _drive(mission: Mission, folder: Path, *, as_json: bool) -> None:
+def _drive(mission: Mission, folder: Path, *, as_json: bool, frames: bool = True) -> None:
     from tmpud.events import Event
     from tmpud.execution.timing import Stopwatch
     from tmpud.presets import preset_named
-    from tmpud.recording import read_run, record, record_timing
+    from tmpud.recording import record, record_timing
     from tmpud.roads.loading import load_map
     from tmpud.runner import drive as run
     from tmpud.story import Story, closing, summarise
@@ -97,7 +100,7 @@ def _drive(mission: Mission, folder: Path, *, as_json: bool) -> None:
 
     watch, story = Stopwatch(), Story()
     events: list[Event] = []
-    for event in record(run(mission, stopwatch=watch), folder):
+    for event in record(run(mission, stopwatch=watch, frames=frames), folder):
         events.append(event)
         if not as_json:
             for line in story.tell(event):

@@ -2,11 +2,13 @@
 
 Schema 1. An event is one JSON object on a line; ``event`` names its class, the other keys are the fields below.
 A transition is ``[segment, leg, action, next segment, next leg]``. Lengths in ``Frame`` are whole centimetres, angles
-whole milliradians, speeds whole cm/s; everything else is in SI units. Wall-clock times are not events.
+whole milliradians, speeds whole cm/s; everything else is in SI units; a number that is not finite
+is a string, "inf" or "-inf". Wall-clock times are not events.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from typing import Any
@@ -144,7 +146,7 @@ def _plain(value: Any) -> Any:
     if isinstance(value, Transition):
         return [*value.state, value.action.value, *value.next_state]
     if isinstance(value, float):
-        return round(value, 6)
+        return round(value, 6) if math.isfinite(value) else str(value)
     if isinstance(value, tuple | list):
         return [_plain(item) for item in value]
     if isinstance(value, Mapping):

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 from tmpud.motion.mapping import StateMapping
 from tmpud.motion.path_planner import PathPlanner
 from tmpud.presets import Preset, preset_named
 from tmpud.roads.loading import load_map
 from tmpud.roads.network import RoadNetwork
-from tmpud.roads.places import service_request
+from tmpud.roads.places import request as service_request
 from tmpud.symbols import LazyCost, OptimisticSafe, ServiceRequest
 from tmpud.task.asp_planner import AspPlanner, PlanReport
 from tmpud.task.domain import Domain
@@ -34,7 +33,7 @@ class Problem:
         """Read map and places; raises MapError or RequestError."""
         settings = preset_named(preset)
         network = load_map(map_, settings.segment_length)
-        request = service_request(network, start, goal, via, seed)
+        request = service_request(network, start, (goal,), via, seed)
         paths = PathPlanner(network, StateMapping(network, request, settings, seed))
         return cls(network, request, settings, LazyCost(paths.path_length), OptimisticSafe())
 

@@ -43,7 +43,7 @@ class Preset:
     interval: float = 0.25  # omega [s]
     sensing_range: float = 30.0  # [m]
     neighbours: Literal["same level", "target lane"] = "same level"
-    neighbour_heading: float = math.pi  # [rad] vehicles turned further from the ego's heading are not looked at
+    neighbour_heading: float = math.radians(120.0)  # [rad] vehicles turned further from the ego's are not looked at
     ego_speeds: tuple[float, ...] = ()  # [m/s] constant speeds, the worst counts; empty: the planned profile
 
     # The loop (Algorithm 2)
@@ -66,6 +66,7 @@ PAPER = Preset(
     aggregate="max+mean",
     lane_keeping="all vehicles",
     share="sampled",
+    neighbour_heading=math.pi,
     cost_update="current pose",
     safe_expires=None,
     pose="sampled",

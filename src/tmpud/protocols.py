@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     import numpy as np
 
     from tmpud.events import Event
-    from tmpud.judging.judge import Verdict
+    from tmpud.judging.rules import Verdict
     from tmpud.safety.estimator import SafetyEstimate
     from tmpud.scene import Control, FloatArray, Outcome, Scene, Vehicles
     from tmpud.task.asp_planner import PlanReport
@@ -72,7 +72,7 @@ class Simulator(Protocol):
     """A town with traffic, in which the ego is moved by commands."""
 
     def reset(self, lane: str, station: float) -> Scene:
-        """Put the ego, at rest, at a station of a lane."""
+        """Put the ego at a station of a lane, in the running town."""
         ...
 
     def step(self, control: Control) -> Scene:

@@ -24,7 +24,7 @@ from tmpud.presets import Preset, preset_named
 from tmpud.protocols import Simulator
 from tmpud.roads.loading import load_map
 from tmpud.roads.network import RoadNetwork
-from tmpud.roads.places import service_request
+from tmpud.roads.places import request as service_request
 from tmpud.safety.estimator import SafeSetEstimator
 from tmpud.scene import Outcome
 from tmpud.symbols import ServiceRequest
@@ -79,7 +79,7 @@ def drive(
     preset = preset_named(mission.preset)
     communicate = communication(mission.algorithm, mission.beta)
     network = load_map(mission.map, preset.segment_length)
-    request = service_request(network, mission.start, mission.goal, mission.via, mission.seed)
+    request = service_request(network, mission.start, (mission.goal,), mission.via, mission.seed)
     watch = stopwatch or Stopwatch()
     yield _header(mission, preset, network, request)
     mapping = StateMapping(network, request, preset, mission.seed)

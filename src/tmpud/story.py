@@ -74,7 +74,7 @@ def actions(plan: TaskPlan) -> str:
 
 def summarise(events: Iterable[Event]) -> dict[str, Any]:
     """Return a run as one JSON object: how it ended, what was planned and what was estimated."""
-    summary: dict[str, Any] = {"schema_version": SCHEMA_VERSION, "plans": [], "estimates": []}
+    summary: dict[str, Any] = {"schema_version": SCHEMA_VERSION, "plans": [], "estimates": [], "judged": []}
     for event in events:
         match event:
             case Header(mission=mission):
@@ -84,6 +84,8 @@ def summarise(events: Iterable[Event]) -> dict[str, Any]:
             case Estimated(step=step, safe=safe):
                 lane, _, _ = step.state.segment.rpartition("/")
                 summary["estimates"].append({"action": step.action.value, "lane": lane, "safe": round(safe, 6)})
+            case Judged():
+                summary["judged"].append(_plain(event))
             case Finished():
                 summary |= {
                     "status": event.status,
@@ -94,6 +96,11 @@ def summarise(events: Iterable[Event]) -> dict[str, Any]:
                     **event.metrics,
                 }
     return summary
+
+
+def _plain(event: Judged) -> dict[str, Any]:
+    names = ("time", "kind", "vehicle", "rule", "blame", "detail")
+    return {name: getattr(event, name) for name in names}
 
 
 def _plan_summary(event: Planned) -> dict[str, Any]:

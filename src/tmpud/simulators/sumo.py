@@ -32,7 +32,8 @@ SENSING_RANGE = 80.0  # [m] others further away are not in the scene
 EXTEND_EVERY = 100  # steps between looks at the cars' routes
 YAW_WINDOW = 11  # steps over which a yaw rate is measured
 PATIENCE = 60.0  # [s] simulated
-ROOM_BEHIND, ROOM_AHEAD = 15.0, 15.0  # [m] around the place where the ego appears
+ROOM_BEHIND, ROOM_AHEAD = 15.0, 25.0  # [m] around the place where the ego appears
+GENTLE = 2.0  # [m/s^2] braking
 OPTIONS = (
     "--no-step-log", "--no-warnings", "--duration-log.disable", "--collision.action", "none",
     "--collision.check-junctions", "--collision.mingap-factor", "0", "--time-to-teleport", "-1",
@@ -73,7 +74,7 @@ class SumoSimulator:
     # The Simulator protocol ------------------------------------------------------------------------------------
 
     def reset(self, lane: str, station: float) -> Scene:
-        """Put the ego, at rest, on a lane; cars that stand where it should be are moved elsewhere."""
+        """Put the ego on a lane at the speed of the flow, or such that it could stop before the lane ends."""
         pose = self._network.lanes[lane].centre.pose_at(station)
         self._clear(lane, station)
         edge = self._network.lanes[lane].edge
@@ -82,7 +83,11 @@ class SumoSimulator:
         self._sumo.vehicle.add(EGO_ID, "ego", typeID="ego", departLane=str(index), departPos=f"{station:.2f}")
         self._sumo.vehicle.setSpeedMode(EGO_ID, 0)
         self._sumo.vehicle.setLaneChangeMode(EGO_ID, 0)
-        self._ego = VehicleState(EGO_ID, pose, lane, length=self._limits.length, width=self._limits.width)
+        room = self._network.lanes[lane].length - station - self._limits.length
+        speed = min(WISHED_SPEED, math.sqrt(2 * GENTLE * max(room, 0.0)))
+        self._ego = VehicleState(
+            EGO_ID, pose, lane, speed=speed, length=self._limits.length, width=self._limits.width
+        )
         self._place(self._ego)
         self._advance()
         self._sumo.vehicle.subscribeContext(EGO_ID, self._sumo.CMD_GET_VEHICLE_VARIABLE, SENSING_RANGE, self._fields)
