@@ -10,6 +10,8 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
+from tmpud.errors import RequestError
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Preset:
@@ -95,3 +97,10 @@ RELEASED = Preset(
 )
 
 PRESETS = {preset.name: preset for preset in (TMPUD, PAPER, RELEASED)}
+
+
+def preset_named(name: str) -> Preset:
+    """Return a preset by its name; RequestError for a name that none has."""
+    if name not in PRESETS:
+        raise RequestError(f"no preset is called {name!r}; there are {', '.join(PRESETS)}")
+    return PRESETS[name]

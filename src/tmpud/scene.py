@@ -92,5 +92,7 @@ class Outcome(StrEnum):
 
     DONE = "done"
     COLLIDE = "collide"
-    BLOCKED = "blocked"
-    TIME_LIMIT = "time_limit"
+    BLOCKED = "blocked"  # stood too long
+    TIME_LIMIT = "time limit"
+    INFEASIBLE = "infeasible"  # no path does the action; nothing was driven
+    INVALID = "invalid state"  # a state or command was refused; the independent brake took over

@@ -114,6 +114,7 @@ class RoadNetwork:
     _cuts: dict[str, tuple[Segment, ...]] = field(init=False, repr=False)
     _outgoing: dict[str, list[int]] = field(init=False, repr=False)
     _incoming: dict[str, list[int]] = field(init=False, repr=False)
+    _index: dict[tuple[str, str], int] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         by_edge: dict[str, list[Lane]] = {}
@@ -131,10 +132,11 @@ class RoadNetwork:
         self.segments = {segment.id: segment for cut in self._cuts.values() for segment in cut}
         self._outgoing = {lane: [] for lane in self.lanes}
         self._incoming = {lane: [] for lane in self.lanes}
-        self.internal = {}
+        self.internal, self._index = {}, {}
         for index, connection in enumerate(self.connections):
             self._outgoing[connection.from_lane].append(index)
             self._incoming[connection.to_lane].append(index)
+            self._index[connection.from_lane, connection.to_lane] = index
             self.internal.update(dict.fromkeys(connection.internal_lanes, index))
 
     def segments_of(self, lane: str) -> tuple[Segment, ...]:
@@ -179,6 +181,16 @@ class RoadNetwork:
         allowed = here.change_left if action is Action.MERGELEFT else here.change_right
         return allowed and self.neighbour(lane, action) is not None
 
+    def merge_target(self, segment: str, action: Action) -> Segment | None:
+        """Return where a merge from a segment leads: the neighbouring lane's next segment, None where not offered.
+
+        Where lanes are not cut (one segment per lane), it is the neighbouring lane itself.
+        """
+        there = self.beside(segment, action)
+        if there is None or not self.may_change(self.segments[segment].lane, action):
+            return None
+        return there if math.isinf(self.segment_length) else self.ahead(there.id)
+
     def outgoing(self, lane: str) -> list[LaneConnection]:
         """Return the connections that start at a lane's end."""
         return [self.connections[index] for index in self._outgoing[lane]]
@@ -186,6 +198,10 @@ class RoadNetwork:
     def incoming(self, lane: str) -> list[LaneConnection]:
         """Return the connections that end at a lane's start."""
         return [self.connections[index] for index in self._incoming[lane]]
+
+    def index_of(self, connection: LaneConnection) -> int:
+        """Return the place of a connection in ``connections``, by which others name it."""
+        return self._index[connection.from_lane, connection.to_lane]
 
     def locate(self, x: float, y: float) -> tuple[Lane, float, float]:
         """Return the lane nearest to a point, the station on it and the offset to its left [m]."""

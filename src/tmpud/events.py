@@ -1,0 +1,172 @@
+"""A run as a stream of events: what was planned, estimated, refused, done and judged, and what could be seen.
+
+Schema 1. An event is one JSON object on a line; ``event`` names its class, the other keys are the fields below.
+A transition is ``[segment, leg, action, next segment, next leg]``. Lengths in ``Frame`` are whole centimetres, angles
+whole milliradians, speeds whole cm/s; everything else is in SI units. Wall-clock times are not events.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+from typing import Any
+
+from tmpud.errors import RunFileError
+from tmpud.symbols import Action, State, TaskPlan, Transition
+
+SCHEMA_VERSION = 1
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """Something that happened at a simulated time [s]."""
+
+    time: float
+
+
+@dataclass(frozen=True, slots=True)
+class Header(Event):
+    """What was run, so that it can be run again."""
+
+    versions: Mapping[str, str]
+    map: Mapping[str, Any]  # name, digest, offset, projection
+    mission: Mapping[str, Any]  # start, goals, algorithm, beta, traffic, seed, preset's fields, dt
+    schema_version: int = SCHEMA_VERSION
+
+
+@dataclass(frozen=True, slots=True)
+class Planned(Event):
+    """The task planner's answer, its terms per transition, and the next best plans."""
+
+    leg: int
+    plan: TaskPlan
+    cost: tuple[float, ...]  # [m] per transition
+    penalty: tuple[float, ...]  # [m] per transition
+    alternatives: tuple[tuple[TaskPlan, float, float], ...]  # (plan, cost [m], penalty [m])
+    reason: str  # "start", or what made it plan anew
+
+    @property
+    def cost_m(self) -> float:
+        return sum(self.cost)
+
+    @property
+    def penalty_m(self) -> float:
+        return sum(self.penalty)
+
+
+@dataclass(frozen=True, slots=True)
+class Estimated(Event):
+    """Algorithm 1's answer for one action in one snapshot."""
+
+    step: Transition
+    safe: float
+    worst: str | None
+    min_t: float
+    ids: tuple[str, ...]  # (N,)
+    o: tuple[tuple[float, ...], ...]  # (N, T)
+    trajectory: tuple[tuple[float, float, float, float], ...]  # (T, 4) t, x, y, heading of the ego
+
+
+@dataclass(frozen=True, slots=True)
+class Refused(Event):
+    """An action that is not taken: its Safe led to another plan."""
+
+    step: Transition
+    safe: float
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class Executed(Event):
+    """An action that was driven, and how it ended."""
+
+    step: Transition
+    outcome: str
+    estimated: bool  # whether an estimate of the snapshot it began in preceded it
+    distance: float  # [m] driven since the start
+
+
+@dataclass(frozen=True, slots=True)
+class Frame(Event):
+    """Everything on the road at one instant; rows are ``[x, y, heading, speed]`` in cm, cm, mrad, cm/s."""
+
+    ego: tuple[int, int, int, int]
+    ids: tuple[str, ...]
+    others: tuple[tuple[int, int, int, int], ...]
+    signals: Mapping[str, str]
+
+
+@dataclass(frozen=True, slots=True)
+class Judged(Event):
+    """A collision, a forced stop or a broken rule of the road."""
+
+    kind: str
+    vehicle: str | None
+    rule: str
+    blame: str
+    detail: str
+
+
+@dataclass(frozen=True, slots=True)
+class Finished(Event):
+    """How the run ended, in one named status."""
+
+    status: str
+    message: str
+    distance: float  # [m]
+    travel_time: float  # [s]
+    replans: int
+    metrics: Mapping[str, float] = field(default_factory=dict)
+
+
+_KINDS: dict[str, type[Event]] = {
+    kind.__name__: kind for kind in (Header, Planned, Estimated, Refused, Executed, Frame, Judged, Finished)
+}
+
+
+def to_json(event: Event) -> dict[str, Any]:
+    """Return an event as a JSON object."""
+    values = {f.name: _plain(getattr(event, f.name)) for f in fields(event)}
+    return {"event": type(event).__name__, **values}
+
+
+def from_json(row: Mapping[str, Any]) -> Event:
+    """Return the event a JSON object stands for; RunFileError where it stands for none."""
+    values = dict(row)
+    try:
+        kind = _KINDS[values.pop("event")]
+        return kind(**{name: _RESTORE.get(name, _tuples)(value) for name, value in values.items()})
+    except (KeyError, TypeError, ValueError) as error:
+        raise RunFileError(f"not an event of schema {SCHEMA_VERSION}: {error}") from error
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, Transition):
+        return [*value.state, value.action.value, *value.next_state]
+    if isinstance(value, float):
+        return round(value, 6)
+    if isinstance(value, tuple | list):
+        return [_plain(item) for item in value]
+    if isinstance(value, Mapping):
+        return {key: _plain(item) for key, item in value.items()}
+    return value
+
+
+def _tuples(value: Any) -> Any:
+    return tuple(_tuples(item) for item in value) if isinstance(value, list) else value
+
+
+def _transition(row: list[Any]) -> Transition:
+    segment, leg, action, next_segment, next_leg = row
+    return Transition(State(segment, leg), Action(action), State(next_segment, next_leg))
+
+
+def _plan(rows: list[list[Any]]) -> TaskPlan:
+    return tuple(_transition(row) for row in rows)
+
+
+_RESTORE: dict[str, Any] = {
+    "step": _transition,
+    "plan": _plan,
+    "alternatives": lambda rows: tuple((_plan(plan), cost, penalty) for plan, cost, penalty in rows),
+}

@@ -1,0 +1,100 @@
+"""What Algorithm 2 has in mind while it runs: the request, what is known, how often it changed its mind."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Generator
+
+from tmpud.events import Estimated, Event, Planned, Refused
+from tmpud.execution.knowledge import Knowledge
+from tmpud.presets import Preset
+from tmpud.protocols import MotionPlanner, TaskPlanner, World
+from tmpud.safety.estimator import SafetyEstimate
+from tmpud.symbols import Action, ServiceRequest, State, TaskPlan, Transition
+from tmpud.task.domain import Domain
+from tmpud.task.utility import Utility
+
+ALTERNATIVES = 4  # other plans that are listed beside the best one
+
+
+class Deliberation:
+    """Shared by the loop and by what lines 5 to 7 are for each algorithm."""
+
+    def __init__(
+        self, request: ServiceRequest, domain: Domain, planner: TaskPlanner, motion: MotionPlanner, world: World
+    ) -> None:
+        """``domain`` is asked only for what can be done in a state when no plan is left."""
+        self.request, self.domain, self.planner, self.world = request, domain, planner, world
+        self.preset: Preset = planner.preset
+        self.known = Knowledge(motion.path_length, self.preset)
+        self.replans = 0
+
+    def plan(self, state: State) -> TaskPlan:
+        """Return P^t(s, s^g, Cost, Safe); raises NoPlanError."""
+        self.known.forget(self.world.time)
+        return self.planner.solve(state, self.request, self.known.cost, self.known.safe).plan
+
+    def estimates(self, step: Transition) -> bool:
+        """Whether the motion level judges this action: where the preset says so and a path does it."""
+        wanted = self.preset.estimated == "every action" or step.action.is_merge
+        return wanted and math.isfinite(self.world.path_length(step))
+
+    def is_better(self, new: TaskPlan, old: TaskPlan) -> bool:
+        """Whether a plan is worth changing to: better by the hysteresis, or the old one cannot be driven."""
+        utility = Utility(self.preset, self.known.cost, self.known.safe, {})
+        new_sum, old_sum = (sum(utility.total(plan)) for plan in (new, old))
+        return new != old and old_sum - new_sum >= self.preset.hysteresis - 1e-9
+
+    def gives_up(self, tried: list[TaskPlan]) -> bool:
+        """Whether the plan changed too often without motion."""
+        return len(tried) >= self.preset.max_replans
+
+    def most_conservative(self, plans: list[TaskPlan]) -> TaskPlan:
+        """Return the plan with the least safety penalty, the latest of equals."""
+        utility = Utility(self.preset, self.known.cost, self.known.safe, {})
+        return min(reversed(plans), key=lambda plan: utility.total(plan).penalty)
+
+    def hold_lane(self, state: State) -> TaskPlan:
+        """Return one step that keeps the lane, or follows it through a junction; none where the lane ends."""
+        ways = [way for way in self.domain.successors(state) if not way.action.is_merge]
+        drivable = [way for way in ways if self.known.cost[way] < math.inf]
+        return tuple(sorted(drivable, key=lambda way: (way.action is not Action.FORWARD, way.next_state))[:1])
+
+    # Events ----------------------------------------------------------------------------------------------------
+
+    def planned(self, plan: TaskPlan, reason: str) -> Planned:
+        """Return the record of a plan that is taken up, beside the next best ones."""
+        start = plan[0].state if plan else self.domain.start_state()
+        cost, safe = self.known.cost, self.known.safe
+        utility = Utility(self.preset, cost, safe, {})
+        terms = [utility.terms(step) for step in plan]
+        others = self.planner.alternatives(start, self.request, cost, safe, ALTERNATIVES)
+        return Planned(
+            time=self.world.time,
+            leg=start.leg,
+            plan=plan,
+            cost=tuple(term.cost for term in terms),
+            penalty=tuple(term.penalty for term in terms),
+            alternatives=tuple((other.plan, other.cost_m, other.penalty_m) for other in others),
+            reason=reason,
+        )
+
+    def estimated(self, step: Transition, estimate: SafetyEstimate) -> Estimated:
+        """Return the record of an estimate."""
+        path = zip(estimate.times, estimate.trajectory.poses, strict=True)
+        return Estimated(
+            time=self.world.time,
+            step=step,
+            safe=estimate.safe,
+            worst=estimate.worst,
+            min_t=estimate.min_t,
+            ids=estimate.ids,
+            o=tuple(tuple(float(value) for value in row) for row in estimate.o),
+            trajectory=tuple((float(t), float(x), float(y), float(heading)) for t, (x, y, heading) in path),
+        )
+
+    def replanned(self, step: Transition, safe: float, plan: TaskPlan, reason: str) -> Generator[Event, None, None]:
+        """Yield the records of an action refused and of the plan that takes its place."""
+        self.replans += 1
+        yield Refused(self.world.time, step, safe, reason)
+        yield self.planned(plan, reason)

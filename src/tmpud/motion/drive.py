@@ -1,0 +1,87 @@
+"""One transition under way: where the ego is on its route, whom it follows, and what holds it up."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from tmpud.dynamics import VehicleLimits
+from tmpud.motion.right_of_way import RightOfWay
+from tmpud.motion.route import Route
+from tmpud.motion.speed import Obstacle, acceleration, leader
+from tmpud.motion.tracking import Tracker
+from tmpud.scene import Control, FloatArray, Scene
+
+
+class Drive:
+    """One transition under way: route, tracker, and what holds the ego up."""
+
+    def __init__(
+        self,
+        route: Route,
+        guide: Route | None,
+        right_of_way: RightOfWay,
+        limits: VehicleLimits,
+    ) -> None:
+        self.route, self._guide = route, guide
+        self._right_of_way = right_of_way
+        self._tracker, self._limits = Tracker(route, limits), limits
+        self._station: float | None = None
+        self._standing = 0.0  # [s] before the next stop line
+
+    @property
+    def remaining(self) -> float:
+        return math.inf if self._station is None else self.route.end - self._station
+
+    def station(self, scene: Scene) -> float:
+        return self.route.project(scene.ego.pose.x, scene.ego.pose.y, self._station or 0.0)[0]
+
+    def control(self, scene: Scene, dt: float) -> Control:
+        ego = scene.ego
+        self._station, offset = self.route.project(ego.pose.x, ego.pose.y, self._station or 0.0)
+        ahead = self._leader(scene, self._station)
+        wish = acceleration(self.route, self._station, ego.speed, ahead, self._stop(scene, self._station, ahead, dt))
+        return self._tracker.control(ego, self._station, offset, wish, dt)
+
+    def _leader(self, scene: Scene, station: float) -> list[Obstacle]:
+        """Return who is followed: until the centre crosses the line of a merge, the origin lane's leader only."""
+        crossing = self.route.line_crossing
+        if self._guide is not None and crossing is not None and station < crossing:
+            on_guide = self._guide.project(scene.ego.pose.x, scene.ego.pose.y)[0]
+            found = leader(scene, self._guide, on_guide)
+        else:
+            found = leader(scene, self.route, station)
+        return [found] if found else []
+
+    def _stop(self, scene: Scene, station: float, ahead: list[Obstacle], dt: float) -> float | None:
+        """Return how far the next line is that must not be crossed now [m]."""
+        front = station + scene.ego.length / 2
+        gate = next((gate for gate in self.route.gates if gate.station > front - 0.2), None)
+        if gate is None or gate.station - front > 40.0:
+            self._standing = 0.0
+            return None
+        distance = gate.station - front
+        self._standing = self._standing + dt if scene.ego.speed < 0.3 and distance < 5.0 else self._standing
+        beyond = gate.exit - front
+        jammed = any(o.gap < beyond + scene.ego.length + 2.0 and o.speed < 1.0 and o.gap > distance for o in ahead)
+        if self._right_of_way.may_enter(scene, gate.connection, distance, self._standing) and not jammed:
+            return None
+        braking = scene.ego.speed**2 / (2 * max(distance, 0.01))
+        return distance if braking < self._limits.max_braking else None
+
+    def roll_out(self, scene: Scene, times: FloatArray, dt: float = 0.1) -> tuple[FloatArray, FloatArray]:
+        """Return stations and speeds (T,) at some times if all others keep their speed."""
+        station, speed = self.station(scene), scene.ego.speed
+        ahead = self._leader(scene, station)
+        stop = self._stop(scene, station, ahead, 0.0)
+        grid = [(0.0, station, speed)]
+        for i in range(math.ceil(float(times[-1]) / dt)):
+            moved = station - grid[0][1]
+            now = [Obstacle(o.gap + o.speed * i * dt - moved, o.speed) for o in ahead]
+            wish = acceleration(self.route, station, speed, now, None if stop is None else stop - moved)
+            speed = max(speed + wish * dt, 0.0)
+            station += speed * dt
+            grid.append(((i + 1) * dt, station, speed))
+        t, s, v = np.array(grid).T
+        return np.interp(times, t, s), np.interp(times, t, v)

@@ -1,0 +1,51 @@
+"""The path planner of P^m: from a transition to the shortest path that does it, and its length. No numpy."""
+
+from __future__ import annotations
+
+import math
+
+from tmpud.motion.mapping import RoadPoint, StateMapping
+from tmpud.motion.path import MERGE_LENGTH, SHORTEST_MERGE, Cross, Move, find_path
+from tmpud.roads.network import RoadNetwork
+from tmpud.symbols import Transition
+
+END_ROOM = 3.0  # [m] kept free at a lane's end
+
+
+class PathPlanner:
+    """Finds paths between the poses of f on the lanes of a road network."""
+
+    def __init__(self, network: RoadNetwork, mapping: StateMapping) -> None:
+        self._network, self._mapping = network, mapping
+
+    def path_length(self, transition: Transition) -> float:
+        """Return A*(x, x') between f(s) and f(s') [m]; inf where no path does this action."""
+        return self.path_length_from(self._mapping(transition.state), transition)
+
+    def path_length_from(self, here: RoadPoint, transition: Transition) -> float:
+        """Return A*(x, x') from where the ego is [m]; inf where no path does this action."""
+        moves = self.moves(here, transition)
+        return math.inf if moves is None else sum(move.length for move in moves)
+
+    def lanes(self, transition: Transition) -> tuple[str, ...]:
+        """Return the lanes the transition drives on, in order, those through junctions included."""
+        moves = self.moves(self._mapping(transition.state), transition) or ()
+        found: list[str] = []
+        for move in moves:
+            found += move.connection.internal_lanes if isinstance(move, Cross) else [move.lane.id]
+        return tuple(found)
+
+    def moves(self, here: RoadPoint, transition: Transition) -> tuple[Move, ...] | None:
+        """Return the path from a point to x', None where there is none."""
+        return find_path(self._network, here, self.goal(here, transition), transition.action)
+
+    def goal(self, here: RoadPoint, transition: Transition) -> RoadPoint:
+        """Return x' = f(s'); where lanes are not cut, a merge goes to the nearest pose that it can reach."""
+        goal = self._mapping(transition.next_state)
+        if not (transition.action.is_merge and math.isinf(self._network.segment_length)):
+            return goal
+        lane = self._network.lanes[goal.lane]
+        ratio = lane.length / self._network.lanes[here.lane].length
+        if goal.station - here.station * ratio >= SHORTEST_MERGE:
+            return goal
+        return RoadPoint(goal.lane, min((here.station + MERGE_LENGTH) * ratio, lane.length - END_ROOM))

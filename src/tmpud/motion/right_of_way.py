@@ -1,0 +1,166 @@
+"""Who may enter a junction: lights, stop signs, and gaps in the traffic that goes first."""
+
+from __future__ import annotations
+
+import math
+from collections import defaultdict
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from tmpud.geometry import Polyline
+from tmpud.roads.network import LaneConnection, RoadNetwork
+from tmpud.scene import Scene, Vehicles
+
+CLEARANCE = 2.4  # [m] two paths closer than this share the place
+MARGIN = 1.5  # [s] between the ego leaving a shared place and another reaching it
+FOE_SPEED = 6.0  # [m/s] that others may reach
+FOE_HORIZON = 60.0  # [m] how far up the road others are looked for
+LATE_BRAKING = 3.0  # [m/s^2] where more is needed to stop for yellow, the ego goes on
+PATIENCE = 4.0  # [s] after which standing vehicles are taken to be waiting for the ego
+
+
+class Shared(NamedTuple):
+    """Where two paths through a junction share a place: stations on the own and on the other path [m]."""
+
+    enter: float
+    leave: float
+    other_enter: float
+    other_leave: float
+
+
+class RightOfWay:
+    """Decides, for one stop line at a time, whether the ego may cross it now."""
+
+    def __init__(self, network: RoadNetwork) -> None:
+        self._network = network
+        self._shared: dict[tuple[int, int], Shared | None] = {}
+
+    def may_enter(self, scene: Scene, index: int, distance: float, standing: float) -> bool:
+        """Return whether the ego, ``distance`` metres before the line, may go through connection ``index``.
+
+        ``standing`` is for how long it has stood before this line [s].
+        """
+        connection = self._network.connections[index]
+        letter = self._letter(scene, connection)
+        if letter in "rRu" or (letter in "yY" and _can_stop(scene.ego.speed, distance)):
+            return False
+        if ((connection.signal is None and connection.priority in "sw") or letter == "s") and standing <= 0.0:
+            return False
+        yields = () if letter == "G" else connection.yields_to
+        by_lane = _by_lane(scene.others)
+        return not any(
+            self._inside(scene, index, foe, by_lane, foe in connection.yields_to)
+            or (foe in yields and self._arriving(scene, index, foe, by_lane, distance, standing))
+            for foe in connection.foes
+        )
+
+    def _letter(self, scene: Scene, connection: LaneConnection) -> str:
+        """Return the state of the connection's light, "O" (off) where it has none."""
+        return scene.signals[connection.signal][connection.link] if connection.signal else "O"
+
+    def _inside(
+        self,
+        scene: Scene,
+        index: int,
+        foe: int,
+        by_lane: dict[str, list[int]],
+        goes_first: bool,
+    ) -> bool:
+        """Whether a vehicle on a foe's path through the junction will be in the way."""
+        shared = self.shared(index, foe)
+        if shared is None:
+            return False
+        path = self._network.connections[foe].path
+        for lane in self._network.connections[foe].internal_lanes:
+            for i in by_lane.get(lane, ()):
+                station = path.project(float(scene.others.x[i]), float(scene.others.y[i]))[0]
+                half = float(scene.others.length[i]) / 2
+                if station - half > shared.other_leave:
+                    continue
+                waits = float(scene.others.speed[i]) < 0.5 and station + half < shared.other_enter + 0.5
+                if goes_first or not waits:
+                    return True
+        return False
+
+    def _arriving(
+        self,
+        scene: Scene,
+        index: int,
+        foe: int,
+        by_lane: dict[str, list[int]],
+        distance: float,
+        standing: float,
+    ) -> bool:
+        """Whether a vehicle that goes first would reach the shared place before the ego has left it."""
+        shared = self.shared(index, foe)
+        connection = self._network.connections[foe]
+        if shared is None or self._letter(scene, connection) in "rRu":
+            return False
+        ego = scene.ego
+        cleared = _time_to_cover(max(distance, 0.0) + shared.leave + ego.length, ego.speed) + MARGIN
+        for lane, to_line in self._upstream(connection.from_lane):
+            for i in by_lane.get(lane, ()):
+                speed = float(scene.others.speed[i])
+                if standing > PATIENCE and speed < 0.3:
+                    continue
+                on_lane = self._network.lanes[lane].centre.project(float(scene.others.x[i]), float(scene.others.y[i]))
+                way = to_line - on_lane[0] - float(scene.others.length[i]) / 2 + shared.other_enter
+                if way / max(FOE_SPEED, speed) < cleared:
+                    return True
+        return False
+
+    def _upstream(self, lane: str) -> Iterator[tuple[str, float]]:
+        """Yield lanes that lead to a stop line, with the distance from each one's start to that line [m]."""
+        queue = [(lane, self._network.lanes[lane].length)]
+        while queue:
+            lane, to_line = queue.pop()
+            yield lane, to_line
+            if to_line < FOE_HORIZON:
+                queue += [
+                    (before.from_lane, to_line + before.path.length + self._network.lanes[before.from_lane].length)
+                    for before in self._network.incoming(lane)
+                ]
+
+    def shared(self, index: int, foe: int) -> Shared | None:
+        """Return the place that two connections share, None where their paths keep apart."""
+        if (index, foe) not in self._shared:
+            connections = self._network.connections
+            self._shared[index, foe] = _shared_place(connections[index].path, connections[foe].path)
+        return self._shared[index, foe]
+
+
+def _by_lane(others: Vehicles) -> dict[str, list[int]]:
+    found: dict[str, list[int]] = defaultdict(list)
+    for i, lane in enumerate(others.lanes):
+        found[lane].append(i)
+    return found
+
+
+def _can_stop(speed: float, distance: float) -> bool:
+    return speed * speed / (2 * LATE_BRAKING) < distance
+
+
+def _time_to_cover(way: float, speed: float, acceleration: float = 1.5, limit: float = 4.5) -> float:
+    """Return how long a car needs for some way when it speeds up gently [s]."""
+    top = max(limit, speed)
+    speeding_up = (top * top - speed * speed) / (2 * acceleration)
+    if way < speeding_up:
+        return (math.sqrt(speed * speed + 2 * acceleration * way) - speed) / acceleration
+    return (top - speed) / acceleration + (way - speeding_up) / top
+
+
+def _shared_place(own: Polyline, other: Polyline) -> Shared | None:
+    first, second = own.resampled(0.5), other.resampled(0.5)
+    a, b = np.array(first.points), np.array(second.points)
+    close = np.hypot(a[:, None, 0] - b[:, 0], a[:, None, 1] - b[:, 1]) < CLEARANCE
+    if not close.any():
+        return None
+    rows, columns = np.flatnonzero(close.any(axis=1)), np.flatnonzero(close.any(axis=0))
+    return Shared(
+        first.stations[int(rows[0])],
+        first.stations[int(rows[-1])],
+        second.stations[int(columns[0])],
+        second.stations[int(columns[-1])],
+    )

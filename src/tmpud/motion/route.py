@@ -1,0 +1,137 @@
+"""The driven path as arrays: what the speed planner and the tracking controller look things up on."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from tmpud.dynamics import EGO, VehicleLimits
+from tmpud.geometry import Point, Polyline, Pose, wrap_angle
+from tmpud.motion.path import Change, Cross, Move, outline
+from tmpud.roads.network import RoadNetwork
+from tmpud.scene import FloatArray
+
+SPACING = 0.5  # [m] between the points of a route
+SMOOTHING = 2.0  # [m] length of the running mean that takes the corners off a map's polylines
+COMFORTABLE_BRAKING = 2.0  # [m/s^2]
+
+
+@dataclass(frozen=True, slots=True)
+class Gate:
+    """A stop line on the route, before one connection."""
+
+    station: float  # [m] on the route
+    connection: int  # index in RoadNetwork.connections
+    exit: float  # [m] station at which the junction is left
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Route:
+    """A smooth path to the goal pose and beyond, with what governs the speed on it."""
+
+    points: FloatArray  # (P, 2) [m], SPACING apart
+    headings: FloatArray  # (P,) [rad]
+    curvature: FloatArray  # (P,) [1/m], positive to the left
+    speed_limit: FloatArray  # (P,) [m/s] what road, vehicle and the curves ahead allow
+    end: float  # [m] station of the goal pose
+    gates: tuple[Gate, ...]
+    line_crossing: float | None  # [m] station at which a lane change crosses the line; None where there is none
+
+    @property
+    def length(self) -> float:
+        return (len(self.points) - 1) * SPACING
+
+    def index(self, station: float) -> int:
+        return min(max(round(station / SPACING), 0), len(self.points) - 1)
+
+    def pose_at(self, station: float) -> Pose:
+        """Return the pose at a station, between the points by straight lines."""
+        place = min(max(station / SPACING, 0.0), len(self.points) - 1.001)
+        i = int(place)
+        share = place - i
+        x, y = self.points[i] + share * (self.points[i + 1] - self.points[i])
+        turn = wrap_angle(float(self.headings[i + 1] - self.headings[i]))
+        return Pose(float(x), float(y), wrap_angle(float(self.headings[i]) + share * turn))
+
+    def project(self, x: float, y: float, near: float | None = None) -> tuple[float, float]:
+        """Return (station, offset to the left) of a point [m]; with ``near``, only within 8 m of that station."""
+        low, high = 0, len(self.points)
+        if near is not None:
+            low, high = max(self.index(near - 8.0), 0), self.index(near + 8.0) + 1
+        dx, dy = x - self.points[low:high, 0], y - self.points[low:high, 1]
+        i = int(np.argmin(dx * dx + dy * dy))
+        heading = float(self.headings[low + i])
+        along = float(dx[i]) * math.cos(heading) + float(dy[i]) * math.sin(heading)
+        across = float(dy[i]) * math.cos(heading) - float(dx[i]) * math.sin(heading)
+        return (low + i) * SPACING + along, across
+
+
+def build_route(
+    network: RoadNetwork, moves: Sequence[Move], beyond: Sequence[Move], limits: VehicleLimits = EGO
+) -> Route:
+    """Join the moves to the goal pose, and those that follow it, into a route."""
+    points: list[Point] = []
+    limit: list[tuple[float, float]] = []  # (raw station up to which it holds, speed limit)
+    gates: list[Gate] = []
+    crossing: float | None = None
+    driven = 0.0
+    for move in (*moves, *beyond):
+        piece = outline(move)
+        length = Polyline(piece).length if len(piece) > 1 else 0.0
+        if isinstance(move, Cross):
+            gates.append(Gate(driven, network.index_of(move.connection), driven + length))
+        elif isinstance(move, Change):
+            crossing = driven + length / 2
+        points += piece
+        driven += length
+        limit.append((driven, _speed_limit(move)))
+    end = sum(Polyline(piece).length for piece in map(outline, moves) if len(piece) > 1)
+    return _sampled(Polyline(points), end, limit, tuple(gates), crossing, limits)
+
+
+def _speed_limit(move: Move) -> float:
+    return math.inf if isinstance(move, Cross) else move.lane.speed
+
+
+def _sampled(
+    line: Polyline,
+    end: float,
+    limit: list[tuple[float, float]],
+    gates: tuple[Gate, ...],
+    crossing: float | None,
+    limits: VehicleLimits,
+) -> Route:
+    count = max(int(line.length / SPACING) + 1, 3)
+    stations: FloatArray = np.arange(count, dtype=np.float64) * SPACING
+    raw = np.array([line.pose_at(float(s))[:2] for s in stations])
+    points = _smooth(raw)
+    headings = np.unwrap(np.arctan2(np.gradient(points[:, 1]), np.gradient(points[:, 0])))
+    steps = np.hypot(np.gradient(points[:, 0]), np.gradient(points[:, 1]))
+    curvature = np.gradient(headings) / np.maximum(steps, 1e-6)
+    allowed = np.minimum(
+        _limits_at(stations, limit),
+        np.sqrt(limits.max_lateral_acceleration * 0.8 / np.maximum(np.abs(curvature), 1e-6)),
+    )
+    allowed = np.minimum(allowed, limits.max_speed)
+    for i in range(count - 2, -1, -1):  # brake in time for what comes
+        allowed[i] = min(allowed[i], math.sqrt(allowed[i + 1] ** 2 + 2 * COMFORTABLE_BRAKING * SPACING))
+    return Route(points, headings, curvature, allowed, end, gates, crossing)
+
+
+def _limits_at(stations: FloatArray, limit: list[tuple[float, float]]) -> FloatArray:
+    ends = np.array([s for s, _ in limit])
+    speeds = np.array([v for _, v in limit])
+    return np.asarray(speeds[np.minimum(np.searchsorted(ends, stations), len(speeds) - 1)], dtype=np.float64)
+
+
+def _smooth(points: FloatArray) -> FloatArray:
+    """Take a running mean over SMOOTHING metres, shorter towards the ends so that they stay where they are."""
+    half = int(SMOOTHING / SPACING / 2)
+    summed = np.vstack([np.zeros((1, 2)), np.cumsum(points, axis=0)])
+    index = np.arange(len(points))
+    reach = np.minimum(np.minimum(index, len(points) - 1 - index), half)
+    means = (summed[index + reach + 1] - summed[index - reach]) / (2 * reach + 1)[:, None]
+    return np.asarray(means, dtype=np.float64)

@@ -1,0 +1,54 @@
+"""Run folders: an event log that is the same for the same seed, byte for byte, and what reads it back."""
+
+from __future__ import annotations
+
+import gzip
+import json
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+from tmpud.errors import RequestError, RunFileError
+from tmpud.events import Event, from_json, to_json
+from tmpud.execution.timing import Stopwatch
+
+LOG = "run.jsonl.gz"
+TIMING = "timing.jsonl"
+NAME = re.compile(r"[a-z0-9][a-z0-9._-]{0,63}")
+
+
+def record(events: Iterator[Event], folder: Path) -> Iterator[Event]:
+    """Write every event into a run folder while passing it on; what was written stays if the run breaks off."""
+    if not NAME.fullmatch(folder.name):
+        raise RequestError(f"{folder.name!r} is no name for a run: small letters, digits, '.', '_' and '-', at most 64")
+    folder.mkdir(parents=True, exist_ok=True)
+    with (folder / LOG).open("wb") as raw, gzip.GzipFile("", "wb", 6, raw, mtime=0) as log:
+        for event in events:
+            log.write(_line(to_json(event)))
+            yield event
+
+
+def record_timing(stopwatch: Stopwatch, folder: Path) -> None:
+    """Write the wall-clock latencies beside the event log."""
+    rows = (_line({"kind": kind, "ms": round(ms, 3)}) for kind, ms in stopwatch.latencies)
+    (folder / TIMING).write_bytes(b"".join(rows))
+
+
+def read_run(folder: Path) -> Iterator[Event]:
+    """Yield a run's events; RunFileError names the line that cannot be read."""
+    path = folder / LOG
+    read = 0  # lines
+    try:
+        with gzip.open(path, "rt", encoding="utf-8") as log:
+            for line in log:
+                event = from_json(json.loads(line))
+                read += 1
+                yield event
+    except FileNotFoundError as error:
+        raise RunFileError(f"{path}: no such run; a run folder holds {LOG}") from error
+    except (OSError, EOFError, ValueError, RunFileError) as error:
+        raise RunFileError(f"{path}:{read + 1}: {error}") from error
+
+
+def _line(row: dict[str, object]) -> bytes:
+    return (json.dumps(row, separators=(",", ":"), ensure_ascii=False, allow_nan=False) + "\n").encode()

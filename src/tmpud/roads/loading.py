@@ -1,0 +1,40 @@
+"""Maps by name: the towns that ship with the package, or a net from a file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from tmpud.errors import MapError
+from tmpud.roads.network import SEGMENT_LENGTH, RoadNetwork
+from tmpud.roads.sumo_net import read_sumo_net
+from tmpud.roads.xml_reading import shown
+
+_TOWNS = Path(__file__).parent / "towns"
+_SUFFIXES = (".net.xml", ".net.xml.gz")
+
+
+def shipped_towns() -> tuple[str, ...]:
+    """Return the names of the towns that ship with the package."""
+    return tuple(sorted(path.name.removesuffix(".net.xml.gz") for path in _TOWNS.glob("*.net.xml.gz")))
+
+
+def map_file(name_or_path: str | Path) -> Path:
+    """Return the net file of a shipped town or a path; MapError where it is neither."""
+    text = str(name_or_path)
+    if text in shipped_towns():
+        return _TOWNS / f"{text}.net.xml.gz"
+    if text.endswith(_SUFFIXES):
+        return Path(text)
+    raise MapError(
+        shown(text),
+        None,
+        f"no such town (there are: {', '.join(shipped_towns())}), nor a {' or '.join(_SUFFIXES)} file",
+    )
+
+
+def load_map(name_or_path: str | Path, segment_length: float = SEGMENT_LENGTH) -> RoadNetwork:
+    """Return the road network of a shipped town or a net file, in segments of at most this length [m].
+
+    Raises MapError.
+    """
+    return read_sumo_net(map_file(name_or_path), segment_length=segment_length)

@@ -1,0 +1,91 @@
+"""What a car can do next on a road network: the moves from segment to segment, and what they connect."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import NamedTuple
+
+from tmpud.roads.network import RoadNetwork
+from tmpud.symbols import Action
+
+MERGE_LENGTH = 20.0  # [m] least distance between the middles of a merge's two segments
+
+
+class Move(NamedTuple):
+    """An action and the segment to which it leads."""
+
+    action: Action
+    segment: str
+
+
+def moves(network: RoadNetwork, segment: str) -> Iterator[Move]:
+    """Yield the moves from a segment: along its lane, to a neighbour's next segment, or through a junction."""
+    ahead = network.ahead(segment)
+    here = network.segments[segment]
+    if ahead is None:
+        for connection in network.outgoing(here.lane):
+            yield Move(connection.action, network.segments_of(connection.to_lane)[0].id)
+        return
+    yield Move(Action.FORWARD, ahead.id)
+    for action in (Action.MERGELEFT, Action.MERGERIGHT):
+        beside = network.beside(ahead.id, action)
+        if beside and network.may_change(here.lane, action) and beside.middle - here.middle >= MERGE_LENGTH:
+            yield Move(action, beside.id)
+
+
+def reachable(network: RoadNetwork, starts: Iterable[str]) -> set[str]:
+    """Return the segments that can be driven to from any of some segments, these included."""
+    found = set(starts)
+    frontier = list(found)
+    while frontier:
+        for move in moves(network, frontier.pop()):
+            if move.segment not in found:
+                found.add(move.segment)
+                frontier.append(move.segment)
+    return found
+
+
+def largest_strong_part(network: RoadNetwork) -> frozenset[str]:
+    """Return the most segments of which each can be reached from every other; the first found of equally many."""
+    graph = {segment: [move.segment for move in moves(network, segment)] for segment in network.segments}
+    return max(strong_parts(graph), key=len, default=frozenset())
+
+
+def strong_parts(graph: dict[str, list[str]]) -> Iterator[frozenset[str]]:
+    """Yield the strongly connected components of a graph (Tarjan 1972, without recursion)."""
+    seen: dict[str, int] = {}  # when a node was first met
+    low: dict[str, int] = {}  # the earliest node on the stack that it leads back to
+    stack: dict[str, None] = {}  # nodes whose component is not known yet, in the order they were met
+
+    def enter(node: str) -> tuple[str, Iterator[str]]:
+        seen[node] = low[node] = len(seen)
+        stack[node] = None
+        return node, iter(graph[node])
+
+    for root in graph:
+        work = [] if root in seen else [enter(root)]
+        while work:
+            node, successors = work[-1]
+            fresh = next((successor for successor in successors if _note(successor, node, seen, low, stack)), None)
+            if fresh is not None:
+                work.append(enter(fresh))
+                continue
+            work.pop()
+            if work:
+                low[work[-1][0]] = min(low[work[-1][0]], low[node])
+            if low[node] == seen[node]:
+                yield frozenset(_pop_until(stack, node))
+
+
+def _note(successor: str, node: str, seen: dict[str, int], low: dict[str, int], stack: dict[str, None]) -> bool:
+    """Whether a successor is new; if it is one on the stack, note that the node leads back to it."""
+    if successor in stack:
+        low[node] = min(low[node], seen[successor])
+    return successor not in seen
+
+
+def _pop_until(stack: dict[str, None], node: str) -> Iterator[str]:
+    top: str | None = None
+    while top != node:
+        top, _ = stack.popitem()
+        yield top

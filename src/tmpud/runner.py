@@ -1,0 +1,134 @@
+"""One mission from its words to its end: assembles map, planners, estimator, simulator and judge, and runs the loop."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import platform
+from collections.abc import Callable, Generator, Iterator
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+from tmpud.errors import InvalidStateError, NoPlanError
+from tmpud.events import Event, Finished, Header
+from tmpud.execution.baselines import communication
+from tmpud.execution.deliberation import Deliberation
+from tmpud.execution.timing import Stopwatch
+from tmpud.execution.tmpud import run_tmpud
+from tmpud.execution.worlds import SimulatedWorld
+from tmpud.judging.judge import Judge
+from tmpud.motion.mapping import StateMapping
+from tmpud.motion.planner import LaneMotionPlanner
+from tmpud.presets import Preset, preset_named
+from tmpud.protocols import Simulator
+from tmpud.roads.loading import load_map
+from tmpud.roads.network import RoadNetwork
+from tmpud.roads.places import service_request
+from tmpud.safety.estimator import SafeSetEstimator
+from tmpud.scene import Outcome
+from tmpud.symbols import ServiceRequest
+from tmpud.task.asp_planner import AspPlanner
+from tmpud.task.domain import Domain
+
+STATUS = {
+    Outcome.DONE: "SUCCESS",
+    Outcome.COLLIDE: "COLLISION",
+    Outcome.BLOCKED: "STOPPED_BLOCKED",
+    Outcome.TIME_LIMIT: "TIME_LIMIT",
+    Outcome.INVALID: "INVALID_STATE",
+}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Mission:
+    """What to drive, how, and among whom."""
+
+    map: str  # a shipped town's name or a .net.xml(.gz) file
+    start: str  # lane or edge id, "x,y" in map coordinates, or "random"
+    goal: str
+    via: tuple[str, ...] = ()
+    algorithm: str = "tmpud"  # tmpud, no-com or threshold
+    beta: float = 0.3  # used by threshold
+    traffic: int = 120  # vehicles
+    seed: int = 7
+    preset: str = "tmpud"
+
+
+SimulatorFactory = Callable[[RoadNetwork, Mission], Simulator]
+
+
+def sumo(network: RoadNetwork, mission: Mission) -> Simulator:
+    """Return the default simulator: SUMO in this process."""
+    from tmpud.simulators.sumo import SumoSimulator
+
+    return SumoSimulator(network, traffic=mission.traffic, seed=mission.seed)
+
+
+def drive(
+    mission: Mission,
+    *,
+    simulator: SimulatorFactory = sumo,
+    stopwatch: Stopwatch | None = None,
+    frames: bool = True,
+) -> Iterator[Event]:
+    """Run one mission and yield its events, from Header to Finished.
+
+    The same mission gives the same events. Raises MapError, RequestError or SimulatorError for what cannot be run.
+    """
+    preset = preset_named(mission.preset)
+    communicate = communication(mission.algorithm, mission.beta)
+    network = load_map(mission.map, preset.segment_length)
+    request = service_request(network, mission.start, mission.goal, mission.via, mission.seed)
+    watch = stopwatch or Stopwatch()
+    yield _header(mission, preset, network, request)
+    mapping = StateMapping(network, request, preset, mission.seed)
+    motion = LaneMotionPlanner(network, mapping)
+    planner = AspPlanner(network, preset)
+    estimator = SafeSetEstimator(preset, motion, network)
+    planner.solve = watch.timed("plan", planner.solve)  # type: ignore[method-assign]
+    estimator.estimate = watch.timed("estimate", estimator.estimate)  # type: ignore[method-assign]
+    judge = Judge(network)
+    town = simulator(network, mission)
+    try:
+        rng = np.random.default_rng(mission.seed)
+        world = SimulatedWorld(network, town, mapping, motion, estimator, judge, rng, frames=frames)
+        domain = Domain(network, request)
+        start = domain.start_state()
+        world.enter(*mapping(start))
+        mind = Deliberation(request, domain, planner, motion, world)
+        status, message = yield from _ended(run_tmpud(start, mind, communicate))
+    finally:
+        town.close()
+    metrics = {
+        "collisions": len(judge.collisions),
+        "forced_stops": len(judge.forced_stops),
+        "violations": len(judge.violations),
+    }
+    travelled = world.time - world.began
+    yield Finished(world.time, status, message, world.distance, travelled, mind.replans, metrics)
+
+
+def _ended(run: Generator[Event, None, Outcome]) -> Generator[Event, None, tuple[str, str]]:
+    """Pass a run's events on and return its status with a word of explanation."""
+    try:
+        outcome = yield from run
+    except NoPlanError as error:
+        return "NO_PLAN", str(error)
+    except InvalidStateError as error:
+        return "INVALID_STATE", str(error)
+    return STATUS[outcome], ""
+
+
+def _header(mission: Mission, preset: Preset, network: RoadNetwork, request: ServiceRequest) -> Header:
+    versions = {name: importlib.metadata.version(name) for name in ("tmpud", "clingo", "libsumo", "numpy")}
+    return Header(
+        time=0.0,
+        versions={**versions, "python": platform.python_version()},
+        map={"name": network.name, "digest": network.digest, **asdict(network.frame)},
+        mission={**asdict(mission), "request": _words(request), "settings": asdict(preset)},
+    )
+
+
+def _words(request: ServiceRequest) -> dict[str, Any]:
+    return {"start": asdict(request.start), "goals": [asdict(goal) for goal in request.goals]}

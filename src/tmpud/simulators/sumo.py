@@ -1,0 +1,244 @@
+"""SUMO in this process (libsumo): real traffic around an ego that moves by its own dynamics.
+
+SUMO speaks of the front bumper and of angles clockwise from north; both are converted here and nowhere else.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import math
+import random
+import sys
+from collections import deque
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Any
+
+from tmpud.dynamics import EGO, VehicleLimits, step
+from tmpud.errors import SimulatorError
+from tmpud.geometry import Pose, wrap_angle
+from tmpud.roads.network import RoadNetwork
+from tmpud.scene import Control, Scene, Vehicles, VehicleState
+from tmpud.simulators.traffic import AHEAD, SPREAD, WISHED_SPEED, Circulation
+
+if TYPE_CHECKING:
+    from types import ModuleType
+
+EGO_ID = "ego"
+DT = 0.05  # [s]
+SENSING_RANGE = 80.0  # [m] others further away are not in the scene
+EXTEND_EVERY = 100  # steps between looks at the cars' routes
+YAW_WINDOW = 11  # steps over which a yaw rate is measured
+PATIENCE = 60.0  # [s] simulated
+ROOM_BEHIND, ROOM_AHEAD = 15.0, 15.0  # [m] around the place where the ego appears
+OPTIONS = (
+    "--no-step-log", "--no-warnings", "--duration-log.disable", "--collision.action", "none",
+    "--collision.check-junctions", "--collision.mingap-factor", "0", "--time-to-teleport", "-1",
+    "--max-depart-delay", "-1", "--step-length", str(DT),
+)  # fmt: skip
+
+
+class SumoSimulator:
+    """One town with circulating traffic. libsumo holds one simulation per process."""
+
+    def __init__(self, network: RoadNetwork, *, traffic: int, seed: int, warm_up: float = 60.0) -> None:
+        """Load the map and let ``traffic`` vehicles circulate for ``warm_up`` simulated seconds."""
+        self._network = network
+        self._limits: VehicleLimits = EGO
+        self._rng = random.Random(f"traffic/{seed}")  # noqa: S311
+        self._circulation = Circulation(network, self._rng)
+        self._headings: dict[str, deque[tuple[int, float]]] = {}
+        self._ego: VehicleState | None = None
+        self._steps = 0
+        self._sumo = sumo = _start(network, seed)
+        self._fields = (
+            sumo.VAR_POSITION3D, sumo.VAR_ANGLE, sumo.VAR_SPEED, sumo.VAR_ACCELERATION,
+            sumo.VAR_LANE_ID, sumo.VAR_LENGTH, sumo.VAR_WIDTH,
+        )  # fmt: skip
+        vehicle = sumo.vehicle
+        self._getters = dict(
+            zip(
+                self._fields,
+                (vehicle.getPosition3D, vehicle.getAngle, vehicle.getSpeed, vehicle.getAcceleration,
+                 vehicle.getLaneID, vehicle.getLength, vehicle.getWidth),
+                strict=True,
+            )
+        )  # fmt: skip
+        self._fill(traffic)
+        for _ in range(round(warm_up / DT)):
+            self._advance()
+
+    # The Simulator protocol ------------------------------------------------------------------------------------
+
+    def reset(self, lane: str, station: float) -> Scene:
+        """Put the ego, at rest, on a lane; cars that stand where it should be are moved elsewhere."""
+        pose = self._network.lanes[lane].centre.pose_at(station)
+        self._clear(lane, station)
+        edge = self._network.lanes[lane].edge
+        index = self._network.lanes[lane].index
+        self._sumo.route.add("ego", [edge, *self._circulation.walk(edge, 2)])
+        self._sumo.vehicle.add(EGO_ID, "ego", typeID="ego", departLane=str(index), departPos=f"{station:.2f}")
+        self._sumo.vehicle.setSpeedMode(EGO_ID, 0)
+        self._sumo.vehicle.setLaneChangeMode(EGO_ID, 0)
+        self._ego = VehicleState(EGO_ID, pose, lane, length=self._limits.length, width=self._limits.width)
+        self._place(self._ego)
+        self._advance()
+        self._sumo.vehicle.subscribeContext(EGO_ID, self._sumo.CMD_GET_VEHICLE_VARIABLE, SENSING_RANGE, self._fields)
+        self._place(self._ego)
+        self._advance()
+        return self._scene()
+
+    def step(self, control: Control) -> Scene:
+        """Move the ego by one command, let the others react, and return what there is now."""
+        if self._ego is None:
+            raise SimulatorError("step() before reset()")
+        self._ego = step(self._ego, control, DT, self._limits)
+        self._place(self._ego)
+        self._advance()
+        return self._scene()
+
+    def announce(self, roads: Sequence[str]) -> None:
+        """Tell the others by which roads the ego means to go on, so that they give way to it at junctions."""
+        route = [road for road, before in zip(roads, [None, *roads], strict=False) if road != before]
+        try:
+            self._sumo.vehicle.setRoute(EGO_ID, route)
+        except self._sumo.TraCIException:  # too near the road's end to stop, SUMO wants the route from the next road on
+            if len(route) > 1:
+                self._sumo.vehicle.setRoute(EGO_ID, route[1:])
+
+    def everyone(self) -> Vehicles:
+        """Return all other vehicles of the town, for pictures and records."""
+        return self._vehicles(
+            {
+                vehicle: {field: get(vehicle) for field, get in self._getters.items()}
+                for vehicle in self._sumo.vehicle.getIDList()
+                if vehicle != EGO_ID
+            }
+        )
+
+    def close(self) -> None:
+        self._sumo.close()
+
+    def __enter__(self) -> SumoSimulator:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    # Inside ----------------------------------------------------------------------------------------------------
+
+    def _place(self, ego: VehicleState) -> None:
+        """Command SUMO to have the ego's front bumper where its pose says after the next step."""
+        x, y, heading = ego.pose
+        front_x, front_y = x + ego.length / 2 * math.cos(heading), y + ego.length / 2 * math.sin(heading)
+        angle = 90.0 - math.degrees(heading)
+        self._sumo.vehicle.moveToXY(EGO_ID, "", -1, front_x, front_y, angle, keepRoute=1)
+        self._sumo.vehicle.setSpeed(EGO_ID, ego.speed)
+
+    def _advance(self) -> None:
+        self._sumo.simulationStep()
+        self._steps += 1
+        if self._steps % EXTEND_EVERY == 0:
+            self._extend_routes()
+
+    def _fill(self, count: int) -> None:
+        """Put ``count`` cars on the road, each with a wished speed of its own and a random walk to drive."""
+        sumo = self._sumo
+        sumo.vehicletype.copy("DEFAULT_VEHTYPE", "ego")
+        sumo.vehicletype.setLength("ego", self._limits.length)
+        sumo.vehicletype.setWidth("ego", self._limits.width)
+        for number, (lane, station) in enumerate(self._circulation.places(count)):
+            vehicle, road = f"car{number}", self._network.lanes[lane].edge
+            sumo.route.add(vehicle, [road, *self._circulation.walk(road)])
+            index = str(self._network.lanes[lane].index)
+            sumo.vehicle.add(vehicle, vehicle, departLane=index, departPos=f"{station:.2f}", departSpeed="0")
+            sumo.vehicle.setMaxSpeed(vehicle, WISHED_SPEED * self._rng.uniform(1 - SPREAD, 1 + SPREAD))
+
+    def _extend_routes(self) -> None:
+        """Let every car's random walk go on before it runs out."""
+        for vehicle in sorted(self._sumo.vehicle.getIDList()):
+            if vehicle == EGO_ID:
+                continue
+            route, at = self._sumo.vehicle.getRoute(vehicle), self._sumo.vehicle.getRouteIndex(vehicle)
+            if at >= 0 and len(route) - at < AHEAD // 2:
+                self._sumo.vehicle.setRoute(vehicle, [*route[at:], *self._circulation.walk(route[-1])])
+
+    def _clear(self, lane: str, station: float) -> None:
+        """Wait until the ego's place on a lane is free, at most PATIENCE seconds, then take away who stands there."""
+        for _ in range(round(PATIENCE / DT)):
+            if not self._standing_at(lane, station):
+                return
+            self._advance()
+        for vehicle in self._standing_at(lane, station):
+            self._sumo.vehicle.remove(vehicle)
+
+    def _standing_at(self, lane: str, station: float) -> list[str]:
+        """Return the cars on a lane so near to a place that the ego cannot appear there."""
+        low, high = station - ROOM_BEHIND, station + ROOM_AHEAD
+        on_lane = self._sumo.lane.getLastStepVehicleIDs(lane)
+        return [v for v in on_lane if low < self._sumo.vehicle.getLanePosition(v) < high]
+
+    def _scene(self) -> Scene:
+        sumo, ego = self._sumo, self._ego
+        seen: dict[str, dict[int, Any]] = sumo.vehicle.getContextSubscriptionResults(EGO_ID)
+        if ego is None or EGO_ID not in seen:
+            raise SimulatorError("the ego vanished from the simulation")
+        here = seen.pop(EGO_ID)
+        self._ego = ego = replace(ego, lane=here[sumo.VAR_LANE_ID], z=here[sumo.VAR_POSITION3D][2])
+        signals = {light: sumo.trafficlight.getRedYellowGreenState(light) for light in self._network.signals}
+        return Scene(round(sumo.simulation.getTime(), 3), ego, self._vehicles(seen), signals)
+
+    def _vehicles(self, seen: dict[str, dict[int, Any]]) -> Vehicles:
+        """Return vehicles from SUMO's values, in the order of their ids."""
+        sumo = self._sumo
+        states = []
+        for vehicle in sorted(seen):
+            values = seen[vehicle]
+            x, y, z = values[sumo.VAR_POSITION3D]
+            heading = wrap_angle(math.radians(90.0 - values[sumo.VAR_ANGLE]))
+            length = values[sumo.VAR_LENGTH]
+            states.append(
+                VehicleState(
+                    id=vehicle,
+                    pose=Pose(x - length / 2 * math.cos(heading), y - length / 2 * math.sin(heading), heading),
+                    lane=values[sumo.VAR_LANE_ID],
+                    z=z,
+                    speed=values[sumo.VAR_SPEED],
+                    yaw_rate=self._yaw_rate(vehicle, heading),
+                    acceleration=values[sumo.VAR_ACCELERATION],
+                    length=length,
+                    width=values[sumo.VAR_WIDTH],
+                )
+            )
+        return Vehicles.of(states)
+
+    def _yaw_rate(self, vehicle: str, heading: float) -> float:
+        """Return the mean yaw rate over the last half second in which the vehicle was seen [rad/s]."""
+        now = self._steps
+        history = self._headings.setdefault(vehicle, deque(maxlen=YAW_WINDOW))
+        if history and now - history[-1][0] > 1:
+            history.clear()
+        if not history or history[-1][0] != now:
+            history.append((now, heading))
+        first, then = history[0]
+        return wrap_angle(heading - then) / ((now - first) * DT) if now > first else 0.0
+
+
+def _start(network: RoadNetwork, seed: int) -> ModuleType:
+    """Load the network into libsumo; what it says on import goes to stderr."""
+    with contextlib.redirect_stdout(sys.stderr):
+        try:
+            import libsumo
+        except ImportError as error:
+            raise SimulatorError(f"libsumo cannot be imported ({error}): pip install libsumo") from error
+    if not Path(network.source).is_file():
+        raise SimulatorError(f"{network.name}: SUMO needs the map's file, and {network.source!r} is none")
+    try:
+        libsumo.start(["sumo", "--net-file", network.source, "--seed", str(seed % 2**31), *OPTIONS])
+    except Exception as error:  # libsumo's own class cannot be named before it is imported
+        raise SimulatorError(f"SUMO does not start on {network.source}: {error}") from error
+    return libsumo  # type: ignore[no-any-return]
