@@ -57,9 +57,18 @@ def test_a_car_that_hits_the_rear_from_another_direction_is_crossing() -> None:
     assert touching(car(46.5, heading=math.radians(40), name="a")).rule == "rear-end"
 
 
-def test_a_side_by_side_contact_without_a_merge_is_of_another_class() -> None:
-    verdict = touching(car(50.5, 1.8, heading=-0.1, name="beside", lane="in_1"))
+@pytest.mark.parametrize(("x", "y", "heading"), [(50.5, 1.8, -0.1), (50.2, 1.8, 0.0), (48.5, -2.5, 0.7)])
+def test_a_contact_at_the_side_without_a_merge_is_of_another_class(x: float, y: float, heading: float) -> None:
+    verdict = touching(car(x, y, heading=heading, name="beside", lane="in_1"))
     assert verdict.rule == "other"
+
+
+def test_of_two_merges_the_latest_answers() -> None:
+    judge = Judge(NETWORK)
+    judge.merge_began(scene(0.0, car(50)), "in_0", "in_1", "mergeleft")
+    judge.merge_began(scene(3.0, car(65, WIDTH, "in_1")), "in_1", "in_0", "mergeright")
+    (verdict,) = judge.observe(scene(4.0, car(70, WIDTH, "in_1"), car(74, WIDTH, "in_1", name="leader")))
+    assert verdict.detail.endswith("1.0 s after the start of mergeright")
 
 
 def test_a_merge_answers_for_cars_on_both_of_its_lanes_from_its_start() -> None:

@@ -102,6 +102,10 @@ def test_a_give_way_sign_asks_for_no_stand() -> None:
     assert kinds(northwards(None, 10), _unsignalled(crossroads("m"))) == []
 
 
+def test_where_a_light_rules_the_stop_sign_does_not() -> None:
+    assert kinds(northwards(None, 10), crossroads("s")) == []
+
+
 def _unsignalled(network: RoadNetwork) -> RoadNetwork:
     ways = tuple(replace(way, signal=None) for way in network.connections)
     return RoadNetwork("crossroads", network.lanes, ways, {}, {})
@@ -129,6 +133,11 @@ def test_the_way_through_the_junction_and_between_two_lanes_is_on_the_road() -> 
     assert kinds(list(scenes(3, changing))) == []
 
 
+@pytest.mark.parametrize(("x", "lane"), [(96.0, ":J_0_0"), (124.0, ":J_0_0"), (104.0, "in_0"), (116.0, "out_0")])
+def test_near_the_end_of_a_lane_the_next_one_is_on_the_road_too(x: float, lane: str) -> None:
+    assert kinds([scene(0.0, car(x, lane=lane))]) == []
+
+
 def test_beside_the_way_through_the_junction_is_off_the_road() -> None:
     aside = Pose(115.0, 6.5, 0.0)
     assert kinds([scene(0.0, replace(car(110), pose=aside, lane=":J_0_0"))]) == ["off_lane"]
@@ -143,6 +152,10 @@ def test_a_jump_is_noted_and_a_fast_drive_is_none() -> None:
     (verdict,) = found(jumped)
     assert verdict.kind is Kind.JUMP
     assert verdict.time == pytest.approx(2.0 + STEP, abs=STEP)
+
+
+def test_stopping_dead_is_no_jump() -> None:
+    assert kinds([scene(0.0, car(10)), scene(STEP, car(10 + 5 * STEP, speed=0.0))]) == []
 
 
 def test_a_position_that_is_not_a_number_is_a_jump() -> None:

@@ -100,7 +100,7 @@ def test_an_ego_that_never_crosses_forces_nobody() -> None:
 def test_a_trial_with_a_collision_has_no_forced_stop(order: str) -> None:
     hit_at = 1.2 if order == "before" else 5.0
     start = 20 + 4.0 * hit_at + 4.6
-    obstacle = cruising(car(start, WIDTH, "in_1", 0.0, name="obstacle"))
+    obstacle = cruising(car(start, WIDTH, "out_1", 0.0, name="obstacle"))
     judge = judged(obstacle, slowing(behind(), 1.5, 3.0), seconds=6.0)
     assert len(judge.collisions) >= 1
     assert stops(judge) == []
@@ -117,6 +117,15 @@ def test_hard_braking_behind_the_ego_is_recorded_once_beside_the_stop() -> None:
     assert [verdict.vehicle for verdict in braked(judge)] == ["follower"]
     assert stops(judge) == [("follower", "mergeleft(in_0/0)")]
     assert judge.violations == ()
+
+
+def test_a_car_that_stood_when_the_merge_began_may_brake_hard() -> None:
+    starting = behind(0, speed=5.0)
+
+    def late(time: float) -> VehicleState:
+        return slowing(starting, 2.0, 6.0, down_to=2.0)(time) if time > 0 else replace(starting, speed=0.0)
+
+    assert braked(judged(late)) == []
 
 
 def test_gentle_braking_and_braking_elsewhere_is_not_recorded() -> None:

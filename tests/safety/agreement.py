@@ -20,7 +20,7 @@ def random_case(rng: np.random.Generator, steering: bool, widest: float) -> tupl
     low_a, low = -rng.uniform(0, 8), rng.uniform(-widest, widest)
     high_a, high = low_a + rng.uniform(0.1, 12), rng.uniform(-widest, widest)
     controls = Controls((low_a, high_a), (min(low, high) - 1e-3, max(low, high)), steering)
-    by_a, by_turn = rng.normal(size=2) * 10 ** rng.uniform(-3, 2, size=2) * (rng.random(2) > 0.05)
+    by_a, by_turn = rng.normal(size=2) * 10 ** rng.uniform(-4, 6, size=2) * (rng.random(2) > 0.05)
     a, turn = rng.uniform(low_a - 2, high_a + 2), rng.uniform(*controls.turning) * 1.5
     limit = by_a * a + by_turn * (np.tan(turn) if steering else turn)
     return HalfPlane(*(np.array([value]) for value in (limit, by_a, by_turn))), controls

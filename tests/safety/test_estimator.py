@@ -44,11 +44,14 @@ def test_without_vehicles_an_action_is_safe(preset: Preset) -> None:
         assert result.o.shape == (0, len(result.times))
 
 
-@given(st.lists(VEHICLES, max_size=4), VEHICLES, st.sampled_from(["min+mean", "max+mean"]))
+@given(
+    st.lists(VEHICLES, max_size=4),
+    VEHICLES,
+    st.sampled_from([TMPUD, replace(PAPER, samples=50), replace(RELEASED, share="exact")]),
+)
 def test_safe_lies_in_the_unit_interval_and_one_more_vehicle_never_raises_it(
-    vehicles: list[VehicleState], more: VehicleState, aggregation: Aggregate
+    vehicles: list[VehicleState], more: VehicleState, preset: Preset
 ) -> None:
-    preset = replace(TMPUD, aggregate=aggregation)
     before, after = (estimate(scene(*those), preset) for those in (vehicles, [*vehicles, more]))
     assert 0.0 <= after.safe <= before.safe <= 1.0
     assert after.min_t <= before.min_t
@@ -106,6 +109,7 @@ def test_vehicles_on_another_level_or_out_of_range_are_not_looked_at() -> None:
 def test_no_horizon_lasts_until_the_goal_pose_at_the_first_speed() -> None:
     preset = replace(TMPUD, horizon=None, ego_speeds=(5.0, 4.0), interval=1.0)
     assert estimate(scene(), preset, FakeMotion(length=50.0)).times == pytest.approx(np.arange(11))
+    assert len(estimate(scene(), replace(TMPUD, horizon=0.3, interval=0.1)).times) == 4
     with pytest.raises(InfeasibleMotionError, match="cannot be driven"):
         estimate(scene(), preset, FakeMotion(length=math.inf))
 

@@ -2,6 +2,7 @@ import math
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from tests.judging.roads import crossroads
 from tests.safety.fakes import FORWARD, MERGELEFT, FakeMotion, car, scene
@@ -37,6 +38,15 @@ def test_a_car_driving_parallel_in_the_next_lane_is_only_looked_at_by_a_merge() 
     parallel = car(22, 3.2, lane="in_1")
     assert looked_at(parallel) == ()
     assert looked_at(parallel, step=MERGELEFT) == (parallel.id,)
+
+
+@pytest.mark.parametrize(("aside", "expected"), [(2.39, 1), (2.41, 0)])
+def test_half_a_metre_between_two_boxes_is_enough(aside: float, expected: int) -> None:
+    assert len(looked_at(car(22, aside, lane="in_1"))) == expected
+
+
+def test_the_leader_on_the_lane_the_ego_is_still_on_is_car_following() -> None:
+    assert looked_at(car(30, 0, speed=2.0, lane="in_0"), motion=FakeMotion(path=("out_0",))) == ()
 
 
 def test_a_car_that_swings_into_the_path_is_looked_at() -> None:

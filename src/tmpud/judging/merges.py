@@ -38,7 +38,7 @@ class MergeLog:
         for merge in self._merges:
             merge.under_way = merge.under_way and self._still_crossing(merge, scene.ego)
         self._merges = [merge for merge in self._merges if merge.under_way or self._recent(merge, scene.time)]
-        found = ((merge, self._follower(merge, scene)) for merge in self._merges if self._recent(merge, scene.time))
+        found = ((merge, self._follower(merge, scene)) for merge in self._merges)
         self.followers = tuple((merge, index) for merge, index in found if index is not None)
 
     @property
