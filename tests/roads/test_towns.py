@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import gzip
+import json
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -115,3 +116,12 @@ def test_a_town_is_what_its_sources_build(tmp_path: Path) -> None:
     for town in shipped_towns():  # unpacked: other releases of zlib pack the same text otherwise
         built = gzip.decompress((tmp_path / f"{town}.net.xml.gz").read_bytes())
         assert built == gzip.decompress(map_file(town).read_bytes())
+
+
+@pytest.mark.parametrize("town", shipped_towns())
+def test_sumo_s_own_cars_neither_collide_nor_get_stuck(town: str) -> None:
+    command = [sys.executable, str(TOOLS / "check_traffic.py"), town, "--vehicles", "120", "--seconds", "400"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+    found = json.loads(done.stdout)
+    assert (done.returncode, found["collisions"], found["running"]) == (0, 0, 120)
+    assert found["late_mean_speed"] > 1.5

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -142,27 +143,24 @@ def _add(
 def joined(start: Polyline, inner: Sequence[Point], end: Polyline) -> Polyline:
     """Return the way from the end of one lane through some points to the start of another.
 
-    Short steps back, left by coordinates rounded to centimetres, are dropped. Lanes that touch get a path of at most
-    0.1 m along the second one.
+    Points at which it turns back for a short step, since coordinates are rounded, are dropped. Lanes that touch get a
+    path of at most 0.1 m along the second one.
     """
-    points = [start.points[-1]]
-    before = start.points[-2]
+    way = [start.points[-2], start.points[-1]]
     last = end.points[0]
     for point in [*inner, last]:
-        if not _is_step_back(before, points[-1], point):
-            before = points[-1]
-            points.append(point)
-    if points[-1] != last:
-        points.append(last)
+        while len(way) > 2 and _is_kink(way[-2], way[-1], point):
+            way.pop()
+        if point == last or not _is_kink(way[-2], way[-1], point):
+            way.append(point)
     try:
-        return Polyline(points)
+        return Polyline(way[1:])
     except ValueError:
-        return Polyline([points[0], end.pose_at(min(0.1, end.length))[:2]])
+        return Polyline([way[1], end.pose_at(min(0.1, end.length))[:2]])
 
 
-def _is_step_back(before: Point, here: Point, there: Point) -> bool:
-    """Whether a point is one already reached, or a short way back."""
-    dx, dy = there[0] - here[0], there[1] - here[1]
-    if dx * dx + dy * dy > _JOIN * _JOIN:
+def _is_kink(before: Point, here: Point, there: Point) -> bool:
+    """Whether the way turns back at a point, and one of the two steps there is short."""
+    if (there[0] - here[0]) * (here[0] - before[0]) + (there[1] - here[1]) * (here[1] - before[1]) > 0.0:
         return False
-    return dx * (here[0] - before[0]) + dy * (here[1] - before[1]) <= 0.0
+    return min(math.dist(before, here), math.dist(here, there)) <= _JOIN
