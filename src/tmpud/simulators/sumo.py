@@ -85,9 +85,7 @@ class SumoSimulator:
         self._sumo.vehicle.setLaneChangeMode(EGO_ID, 0)
         room = self._network.lanes[lane].length - station - self._limits.length
         speed = min(WISHED_SPEED, math.sqrt(2 * GENTLE * max(room, 0.0)))
-        self._ego = VehicleState(
-            EGO_ID, pose, lane, speed=speed, length=self._limits.length, width=self._limits.width
-        )
+        self._ego = VehicleState(EGO_ID, pose, lane, speed=speed, length=self._limits.length, width=self._limits.width)
         self._place(self._ego)
         self._advance()
         self._sumo.vehicle.subscribeContext(EGO_ID, self._sumo.CMD_GET_VEHICLE_VARIABLE, SENSING_RANGE, self._fields)
