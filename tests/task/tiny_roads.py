@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from tmpud.geometry import Polyline
 from tmpud.roads.network import Lane, LaneConnection, RoadNetwork
-from tmpud.symbols import Action, Place, ServiceRequest
+from tmpud.symbols import Action, Cost, LazyCost, Place, ServiceRequest, Transition
 
 
 def road(edge: str, lanes: int = 1, length: float = 50.0, y: float = 0.0) -> list[Lane]:
@@ -76,3 +76,29 @@ def grid(blocks: int, rng: random.Random | None = None) -> RoadNetwork:
         for a, b in {Action.FORWARD: ((0, 0), (1, 1)), Action.TURNLEFT: ((1, 1),), Action.TURNRIGHT: ((0, 0),)}[action]
     ]
     return network([road(name[edge], 2, 2 * lengths[edge]) for edge in edges], links)
+
+
+def driven(network: RoadNetwork) -> Cost:
+    """Return the length from mid-point to mid-point, 10 m more through a junction [m]."""
+
+    def length(transition: Transition) -> float:
+        here, there = (network.segments[state.segment] for state in (transition.state, transition.next_state))
+        across = network.lanes[here.lane].edge != network.lanes[there.lane].edge
+        return (here.end - here.start + there.end - there.start) / 2 + 10.0 * across
+
+    return LazyCost(length)
+
+
+def two_blocks(block: float) -> RoadNetwork:
+    """Return a road ``a``, ``b`` of two lanes each way; its left lane turns left into ``goal`` after two blocks.
+
+    Going straight on instead, one comes round a block (``c``, ``d``, ``e``, ``f``, [m] long each) to the same corner.
+    """
+    ways = [road("a", 2, 100.0), road("b", 2, 100.0), road("-a", 2, 100.0), road("-b", 2, 100.0), road("goal")]
+    ways += [road(edge, 1, block) for edge in "cdef"]
+    links = [link("a_0", "b_0"), link("a_1", "b_1"), link("-b_0", "-a_0"), link("-b_1", "-a_1"), link("b_0", "c_0")]
+    links += [
+        link(before, after, Action.TURNRIGHT) for before, after in (("c_0", "d_0"), ("d_0", "e_0"), ("e_0", "f_0"))
+    ]
+    links += [link("b_1", "goal_0", Action.TURNLEFT), link("f_0", "goal_0")]
+    return network(ways, links)

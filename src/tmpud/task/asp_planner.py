@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 
-from tmpud.errors import NoPlanError
+from tmpud.errors import NoPlanError, UtilityOverflowError
 from tmpud.presets import TMPUD, Preset
 from tmpud.roads.network import RoadNetwork
 from tmpud.symbols import Cost, Safe, ServiceRequest, State, TaskPlan, Transition
@@ -74,16 +74,21 @@ class AspPlanner:
         search, utility = self._search(state, request, cost, safe)
         if state.leg == search.last:
             return _report((), utility, optimal=True)
-        given = self._given(search, state)
-        if given is None:
-            raise NoPlanError(explain(self._memory[request].domain, state, utility.rank))
-        check_total(given.ranks)
-        instance = facts(self._memory[request].domain, state, _shifted(given))
-        answer = ask(instance, given.ranks, self._options)
-        if answer is None:
-            raise NoPlanError(explain(self._memory[request].domain, state, utility.rank))
+        domain, given = self._memory[request].domain, self._given(search, state)
+        answer = ask(facts(domain, state, _shifted(given)), given.ranks, self._options) if given else None
+        if given is None or answer is None:
+            raise NoPlanError(explain(domain, state, utility.rank))
         report = _report(walk(state, answer.union), utility, optimal=answer.optimal)
+        if report.total_cm != answer.centimetres + split(given.distance[report.plan[-1].next_state])[0]:
+            raise UtilityOverflowError(f"the solver's total is not the plan's: {report.total_cm} cm")
         return replace(report, transitions=len(given.ranks), ground_s=answer.ground_s, solve_s=answer.solve_s)
+
+    def instance(self, state: State, request: ServiceRequest, cost: Cost, safe: Safe) -> str:
+        """Return the facts that, with the package's .lp files, make plain ``clingo`` find the same optimum."""
+        search, _ = self._search(state, request, cost, safe)
+        given = self._given(search, state)
+        weights = {transition: split(rank)[0] for transition, rank in given.ranks.items()} if given else {}
+        return facts(self._memory[request].domain, state, weights)
 
     def alternatives(
         self, state: State, request: ServiceRequest, cost: Cost, safe: Safe, count: int
@@ -119,7 +124,10 @@ class AspPlanner:
         return memory
 
     def _given(self, search: Search, state: State) -> Corridor | None:
-        return corridor(search, state) if self.prune else whole_map(search, state)
+        """Return what the solver is given."""
+        given = corridor(search, state) if self.prune else whole_map(search, state)
+        check_total(given.ranks if given else {})
+        return given
 
 
 def _shifted(given: Corridor) -> dict[Transition, int]:

@@ -8,6 +8,7 @@ from time import perf_counter
 
 import clingo
 
+from tmpud.errors import NoPlanError
 from tmpud.symbols import Transition
 from tmpud.task.facts import encoding
 
@@ -20,14 +21,14 @@ class Answer:
     """What the solver found."""
 
     union: tuple[Transition, ...]  # of all optimal plans; of one plan where the proof is missing
-    cost: tuple[int, int, int]  # centimetres, merges, actions
+    centimetres: int  # the least total of the instance's weights
     optimal: bool  # proved
     ground_s: float  # [s] wall-clock
     solve_s: float  # [s] wall-clock
 
 
 def ask(instance: str, transitions: Iterable[Transition], options: Sequence[str] = ()) -> Answer | None:
-    """Return the best plans of an instance; None where it has none (or the given limit came first)."""
+    """Return the best plans of an instance, None where it has none; raises NoPlanError where a limit came first."""
     began = perf_counter()
     control = clingo.Control([*OPTIONS, *options])
     control.add("base", [], encoding())
@@ -37,20 +38,20 @@ def ask(instance: str, transitions: Iterable[Transition], options: Sequence[str]
     model = _last_model(control)
     if model is None:
         return None
-    atoms, cost, optimal = model
+    atoms, centimetres, optimal = model
     named = {(t.state.segment, t.state.leg, t.action.value, t.next_state.segment): t for t in transitions}
     union = tuple(named[_key(atom)] for atom in atoms)
-    return Answer(union, cost, optimal, grounded - began, perf_counter() - grounded)
+    return Answer(union, centimetres, optimal, grounded - began, perf_counter() - grounded)
 
 
-def _last_model(control: clingo.Control) -> tuple[Sequence[clingo.Symbol], tuple[int, int, int], bool] | None:
+def _last_model(control: clingo.Control) -> tuple[Sequence[clingo.Symbol], int, bool] | None:
     """Return the last model, which holds the union once optimality is proved, with its cost."""
     found = None
     with control.solve(yield_=True) as handle:
         for model in handle:
-            levels = dict(zip(model.priority, model.cost, strict=True))
-            cost = (levels.get(3, 0), levels.get(2, 0), levels.get(1, 0))
-            found = model.symbols(shown=True), cost, model.optimality_proven
+            found = model.symbols(shown=True), model.cost[0], model.optimality_proven
+        if found is None and handle.get().unknown:
+            raise NoPlanError("the solver gave up at its limit of conflicts, before it found a plan")
     return found
 
 

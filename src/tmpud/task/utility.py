@@ -37,7 +37,7 @@ class Utility:
         self._turns = {action: _turn_cost(action, preset) for action in Action}
 
     def terms(self, transition: Transition) -> Terms:
-        cost = max(self._cost[transition], self._floor.get(transition, 0.0))
+        cost = max(self._cost[transition], self._floor.get(transition, -math.inf))
         return Terms(cost, penalty(self._safe[transition], self._preset), self._turns[transition.action])
 
     def rank(self, transition: Transition) -> int:
