@@ -1,0 +1,147 @@
+"""P^t: the task planner of Sec. IV-C, by answer set programming.
+
+What does what: Python looks up the weights and leaves out transitions that cannot lie on an optimal plan
+(``corridor.py``; ``prune=False`` leaves out nothing). clingo decides: it makes the plans of what is left, proves the
+least (centimetres, merges, actions), and returns the union of all plans that have it. Whichever way one walks along
+that union, the plan is optimal; the walk takes the earliest merge, then the smallest lane id (``ties.py``).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+from tmpud.errors import NoPlanError, UtilityOverflowError
+from tmpud.presets import TMPUD, Preset
+from tmpud.roads.network import RoadNetwork
+from tmpud.symbols import Cost, Safe, ServiceRequest, State, TaskPlan, Transition
+from tmpud.task.alternatives import best_plans
+from tmpud.task.corridor import Corridor, Search, Tree, backward_tree, corridor, whole_map
+from tmpud.task.domain import Domain
+from tmpud.task.explain import explain
+from tmpud.task.facts import facts
+from tmpud.task.solver import ask
+from tmpud.task.ties import walk
+from tmpud.task.utility import Utility, check_total, split
+
+REMEMBERED = 16  # requests
+
+
+@dataclass(frozen=True, slots=True)
+class PlanReport:
+    """A plan, what it costs term by term, and how it was found."""
+
+    plan: TaskPlan
+    cost_m: float  # [m] length driven
+    penalty_m: float  # [m] the safety term
+    turns_m: float  # [m] added for turns
+    total_cm: int  # [cm] what was minimised: the sum for each transition, rounded once
+    optimal: bool  # proved
+    transitions: int = 0  # given to the solver
+    ground_s: float = field(default=0.0, compare=False)  # [s] wall-clock
+    solve_s: float = field(default=0.0, compare=False)  # [s] wall-clock
+
+
+@dataclass(slots=True)
+class _Memory:
+    """What is kept of a request from one plan to the next."""
+
+    domain: Domain
+    tree: Tree
+    cost: Cost  # the mapping whose values the tree was last compared with
+
+
+class AspPlanner:
+    """The TaskPlanner that proves its plans; it remembers the distances to the goals of the last requests."""
+
+    def __init__(
+        self, network: RoadNetwork, preset: Preset = TMPUD, *, prune: bool = True, conflicts: int | None = None
+    ) -> None:
+        """Take ``conflicts`` as the solver's limit, after which it gives the best plan it has, unproved."""
+        self.network, self.preset, self.prune = network, preset, prune
+        self._options = () if conflicts is None else (f"--solve-limit={conflicts}",)
+        self._memory: dict[ServiceRequest, _Memory] = {}
+
+    def plan(self, state: State, request: ServiceRequest, cost: Cost, safe: Safe) -> TaskPlan:
+        """Return the optimal plan; raises NoPlanError where there is none."""
+        return self.solve(state, request, cost, safe).plan
+
+    def solve(self, state: State, request: ServiceRequest, cost: Cost, safe: Safe) -> PlanReport:
+        """Return the optimal plan and its terms; raises NoPlanError, RequestError or UtilityOverflowError.
+
+        As long as ``cost`` is the same mapping, a Cost that fell below its first value counts as that first value,
+        unless the preset updates Cost to the current pose's.
+        """
+        search, utility = self._search(state, request, cost, safe)
+        if state.leg == search.last:
+            return _report((), utility, optimal=True)
+        domain, given = self._memory[request].domain, self._given(search, state)
+        answer = ask(facts(domain, state, _shifted(given)), given.ranks, self._options) if given else None
+        if given is None or answer is None:
+            raise NoPlanError(explain(domain, state, utility.rank))
+        report = _report(walk(state, answer.union), utility, optimal=answer.optimal)
+        if report.total_cm != answer.centimetres + split(given.distance[report.plan[-1].next_state])[0]:
+            raise UtilityOverflowError(f"the solver's total is not the plan's: {report.total_cm} cm")
+        return replace(report, transitions=len(given.ranks), ground_s=answer.ground_s, solve_s=answer.solve_s)
+
+    def instance(self, state: State, request: ServiceRequest, cost: Cost, safe: Safe) -> str:
+        """Return the facts that, with the package's .lp files, make plain ``clingo`` find the same optimum."""
+        search, _ = self._search(state, request, cost, safe)
+        given = self._given(search, state)
+        weights = {transition: split(rank)[0] for transition, rank in given.ranks.items()} if given else {}
+        return facts(self._memory[request].domain, state, weights)
+
+    def alternatives(
+        self, state: State, request: ServiceRequest, cost: Cost, safe: Safe, count: int
+    ) -> tuple[PlanReport, ...]:
+        """Return up to ``count`` of the next best plans without loops, the best first, the optimal one left out.
+
+        A* finds them in the same graph and order as the planner's; the solver has not proved them.
+        """
+        search, utility = self._search(state, request, cost, safe)
+        return tuple(_report(plan, utility) for plan in best_plans(search, state, count + 1)[1:])
+
+    def _search(self, state: State, request: ServiceRequest, cost: Cost, safe: Safe) -> tuple[Search, Utility]:
+        """Return the graph to find a plan in, with the weights of this moment."""
+        memory = self._recall(request, cost)
+        memory.domain.check(state)
+        utility = Utility(self.preset, cost, safe, memory.tree.floor)
+        search = Search(memory.domain.successors, utility.rank, memory.tree.distance, memory.domain.last)
+        return search, utility
+
+    def _recall(self, request: ServiceRequest, cost: Cost) -> _Memory:
+        """Return what is kept of a request; the one place that decides whether the kept tree still holds."""
+        memory = self._memory.pop(request, None)
+        if memory is None:
+            domain = Domain(self.network, request)
+            memory = _Memory(domain, backward_tree(domain, self.preset, cost), cost)
+        elif cost is not memory.cost or self.preset.cost_update == "current pose":
+            if not memory.tree.bounds(cost):
+                memory.tree = backward_tree(memory.domain, self.preset, cost)
+            memory.cost = cost
+        self._memory[request] = memory
+        if len(self._memory) > REMEMBERED:
+            del self._memory[next(iter(self._memory))]
+        return memory
+
+    def _given(self, search: Search, state: State) -> Corridor | None:
+        """Return what the solver is given."""
+        given = corridor(search, state) if self.prune else whole_map(search, state)
+        check_total(given.ranks if given else {})
+        return given
+
+
+def _shifted(given: Corridor) -> dict[Transition, int]:
+    """Return each weight with the distances from the start taken out [cm]: every plan's total shrinks by the same.
+
+    The best plans then total 0, from where the solver starts to look.
+    """
+    distance = {state: split(rank)[0] for state, rank in given.distance.items()}
+    return {
+        transition: split(rank)[0] + distance[transition.state] - distance[transition.next_state]
+        for transition, rank in given.ranks.items()
+    }
+
+
+def _report(plan: TaskPlan, utility: Utility, *, optimal: bool = False) -> PlanReport:
+    total = sum(split(utility.rank(transition))[0] for transition in plan)
+    return PlanReport(plan, *utility.total(plan), total, optimal)

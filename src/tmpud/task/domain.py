@@ -1,0 +1,123 @@
+"""The task domain as a transition system: lane segments, the five actions, goals in their order (Sec. IV-C)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from tmpud.errors import RequestError
+from tmpud.roads.network import RoadNetwork, Segment
+from tmpud.symbols import Action, Place, ServiceRequest, State, Transition
+
+MERGES = (Action.MERGELEFT, Action.MERGERIGHT)
+OPPOSITE = {Action.MERGELEFT: Action.MERGERIGHT, Action.MERGERIGHT: Action.MERGELEFT}
+
+
+class Domain:
+    """The states and transitions of one request on one map, worked out when they are first asked for."""
+
+    def __init__(self, network: RoadNetwork, request: ServiceRequest) -> None:
+        """Raise RequestError where a place names a segment that the map does not have."""
+        if not request.goals:
+            raise RequestError(f"{request.start.name}: a request needs at least one goal")
+        self.network, self.request = network, request
+        self.last = len(request.goals)  # the leg in which nothing is left to do
+        for place in (request.start, *request.goals):
+            _check(place, network)
+        self._goals = tuple(frozenset(goal.segments) for goal in request.goals)
+        self._successors: dict[State, tuple[Transition, ...]] = {}
+
+    def start_state(self) -> State:
+        """Return the state a drive begins in: goals that the start itself reaches are done."""
+        segment = self.request.start.segments[0]
+        return State(segment, self._skip(segment, 0))
+
+    def check(self, state: State) -> None:
+        """Raise RequestError where a state is not one of this domain."""
+        if state.segment not in self.network.segments or not 0 <= state.leg <= self.last:
+            raise RequestError(
+                f"{state.segment}, leg {state.leg}: not a state of the drive from {self.request.start.name}"
+            )
+
+    def goal_states(self) -> tuple[State, ...]:
+        return tuple(State(segment, self.last) for segment in self.request.goals[-1].segments)
+
+    def is_goal(self, state: State) -> bool:
+        return state.leg == self.last
+
+    def successors(self, state: State) -> tuple[Transition, ...]:
+        """Return the transitions out of a state; Cost says which of them can be driven."""
+        if state not in self._successors:
+            self._successors[state] = tuple(dict.fromkeys(self._leaving(state)))
+        return self._successors[state]
+
+    def predecessors(self, state: State) -> Iterator[Transition]:
+        """Yield the transitions into a state; one may come twice."""
+        segment, leg = state
+        for before in range(min(leg + 1, self.last)):
+            if self.leg_after(segment, before) == leg:
+                for origin, action in self._ways_into(segment):
+                    yield Transition(State(origin, before), action, state)
+                if self._at_position(segment, before):
+                    yield Transition(State(segment, before), Action.FORWARD, state)
+
+    def leg_after(self, segment: str, leg: int) -> int:
+        """Return the leg that arriving on a segment in some leg leads to."""
+        if leg == self.last or segment not in self._goals[leg]:
+            return leg
+        return self._skip(segment, leg + 1)
+
+    def _skip(self, segment: str, leg: int) -> int:
+        goals = self.request.goals
+        while leg < self.last and goals[leg].station is None and segment in self._goals[leg]:
+            leg += 1
+        return leg
+
+    def _at_position(self, segment: str, leg: int) -> bool:
+        """Whether the leg's goal is a position on the segment: it may be reached by driving on within it."""
+        return self.request.goals[leg].station is not None and segment in self._goals[leg]
+
+    def _leaving(self, state: State) -> Iterator[Transition]:
+        segment, leg = state
+        if self.is_goal(state):
+            return
+        if self._at_position(segment, leg):
+            yield Transition(state, Action.FORWARD, State(segment, self.leg_after(segment, leg)))
+        for action, target in self._ways_out_of(segment):
+            yield Transition(state, action, State(target, self.leg_after(target, leg)))
+
+    def _ways_out_of(self, segment: str) -> Iterator[tuple[Action, str]]:
+        network, lane = self.network, self.network.segments[segment].lane
+        following = network.ahead(segment)
+        if following is None:
+            for connection in network.outgoing(lane):
+                if not connection.turnaround:
+                    yield connection.action, network.segments_of(connection.to_lane)[0].id
+            return
+        yield Action.FORWARD, following.id
+        for action in MERGES:
+            beside = network.beside(following.id, action)
+            if beside is not None and network.may_change(lane, action):
+                yield action, beside.id
+
+    def _ways_into(self, segment: str) -> Iterator[tuple[str, Action]]:
+        network, lane = self.network, self.network.segments[segment].lane
+        preceding = network.behind(segment)
+        if preceding is None:
+            for connection in network.incoming(lane):
+                if not connection.turnaround:
+                    yield network.segments_of(connection.from_lane)[-1].id, connection.action
+            return
+        yield preceding.id, Action.FORWARD
+        for action in MERGES:
+            beside: Segment | None = network.beside(preceding.id, OPPOSITE[action])
+            if beside is not None and network.may_change(beside.lane, action):
+                yield beside.id, action
+
+
+def _check(place: Place, network: RoadNetwork) -> None:
+    unknown = [segment for segment in place.segments if segment not in network.segments]
+    if unknown or not place.segments:
+        missing = f"segment {unknown[0]!r} is not on the map {network.name}" if unknown else "it has no segment"
+        raise RequestError(f"{place.name}: {missing}")
+    if place.station is not None and len(place.segments) != 1:
+        raise RequestError(f"{place.name}: a position lies on one segment, not on {len(place.segments)}")

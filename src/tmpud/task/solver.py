@@ -1,0 +1,60 @@
+"""The only place that talks to clingo: one program, one thread, no wall-clock limit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from time import perf_counter
+
+import clingo
+
+from tmpud.errors import NoPlanError
+from tmpud.symbols import Transition
+from tmpud.task.facts import encoding
+
+# All optimal plans at once: the union of their atoms ("brave consequences").
+OPTIONS = ("--warn=none", "--opt-mode=optN", "--enum-mode=brave")
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """What the solver found."""
+
+    union: tuple[Transition, ...]  # of all optimal plans; of one plan where the proof is missing
+    centimetres: int  # the least total of the instance's weights
+    optimal: bool  # proved
+    ground_s: float  # [s] wall-clock
+    solve_s: float  # [s] wall-clock
+
+
+def ask(instance: str, transitions: Iterable[Transition], options: Sequence[str] = ()) -> Answer | None:
+    """Return the best plans of an instance, None where it has none; raises NoPlanError where a limit came first."""
+    began = perf_counter()
+    control = clingo.Control([*OPTIONS, *options])
+    control.add("base", [], encoding())
+    control.add("base", [], instance)
+    control.ground([("base", [])])
+    grounded = perf_counter()
+    model = _last_model(control)
+    if model is None:
+        return None
+    atoms, centimetres, optimal = model
+    named = {(t.state.segment, t.state.leg, t.action.value, t.next_state.segment): t for t in transitions}
+    union = tuple(named[_key(atom)] for atom in atoms)
+    return Answer(union, centimetres, optimal, grounded - began, perf_counter() - grounded)
+
+
+def _last_model(control: clingo.Control) -> tuple[Sequence[clingo.Symbol], int, bool] | None:
+    """Return the last model, which holds the union once optimality is proved, with its cost."""
+    found = None
+    with control.solve(yield_=True) as handle:
+        for model in handle:
+            found = model.symbols(shown=True), model.cost[0], model.optimality_proven
+        if found is None and handle.get().unknown:
+            raise NoPlanError("the solver gave up at its limit of conflicts, before it found a plan")
+    return found
+
+
+def _key(atom: clingo.Symbol) -> tuple[str, int, str, str]:
+    origin, leg, action, target = atom.arguments
+    return origin.string, leg.number, action.name, target.string
