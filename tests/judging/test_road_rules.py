@@ -138,8 +138,12 @@ def test_near_the_end_of_a_lane_the_next_one_is_on_the_road_too(x: float, lane: 
     assert kinds([scene(0.0, car(x, lane=lane))]) == []
 
 
+def test_on_a_way_that_crosses_the_one_the_simulator_names_it_is_on_the_road() -> None:
+    assert kinds([scene(0.0, car(104, lane=":J_3_0"))]) == []
+
+
 def test_beside_the_way_through_the_junction_is_off_the_road() -> None:
-    aside = Pose(115.0, 6.5, 0.0)
+    aside = Pose(115.0, 8.0, 0.0)
     assert kinds([scene(0.0, replace(car(110), pose=aside, lane=":J_0_0"))]) == ["off_lane"]
 
 

@@ -54,7 +54,7 @@ def test_safe_lies_in_the_unit_interval_and_one_more_vehicle_never_raises_it(
 ) -> None:
     before, after = (estimate(scene(*those), preset) for those in (vehicles, [*vehicles, more]))
     assert 0.0 <= after.safe <= before.safe <= 1.0
-    assert after.min_t <= before.min_t
+    assert after.min_t == after.o.min(initial=1.0)
     assert after.safe == min(after.o_star, default=1.0)
 
 

@@ -11,6 +11,8 @@ from tmpud.judging.stops import ForcedStops, HardBraking
 from tmpud.roads.network import RoadNetwork
 from tmpud.scene import Scene
 
+__all__ = ["Judge", "Verdict"]
+
 
 class Judge:
     """Judges logged scenes alone; knows nothing of planner and simulator but the merges it is told of."""

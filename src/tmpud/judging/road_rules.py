@@ -14,10 +14,16 @@ _Curve = tuple[Polyline, float]  # a centre line and the lane's width [m]
 
 
 class OffLane:
-    """The ego's centre is outside of every lane and way through a junction that it can be on."""
+    """The ego's centre is outside of every lane and way through a junction that it can be on.
+
+    Inside a junction any of its ways will do: a simulator may place the ego on the wrong one of two that cross.
+    """
 
     def __init__(self, network: RoadNetwork, rules: JudgingRules) -> None:
         self._network, self._rules = network, rules
+        self._ways: dict[str, list[LaneConnection]] = {}  # of each junction
+        for way in network.connections:
+            self._ways.setdefault(way.junction, []).append(way)
         self._lane = ""  # the last one known
         self._begins = Rising()
 
@@ -37,7 +43,7 @@ class OffLane:
         """Yield the lane, then its neighbours and what it is joined to, the likeliest first."""
         if lane in self._network.internal:
             way = self._network.connections[self._network.internal[lane]]
-            ways = [way, *self._network.outgoing(way.from_lane), *self._network.incoming(way.to_lane)]
+            ways = [way, *self._ways[way.junction]]
         elif lane in self._network.lanes:
             row = (lane, *self._network.edges[self._network.lanes[lane].edge])
             yield from (self._curve(name) for name in row)

@@ -25,7 +25,7 @@ class SafetyEstimate:
 
     safe: float  # min_i o_i*, in [0, 1]; 1.0 without vehicles
     worst: str | None  # the vehicle that sets it; None where none was looked at
-    min_t: float  # the least o_i(t) of all; 1.0 without vehicles
+    min_t: float  # the least o_i(t) of all at the ego speed that counts; 1.0 without vehicles
     ids: tuple[str, ...]  # (N,)
     o: FloatArray  # (N, T) o_i(t)
     o_star: FloatArray  # (N,) o_i*
