@@ -85,6 +85,7 @@ MISTAKES = {
     "a coordinate that is not a number": ("110.00,-1.60 240.00,-1.60", "110.00,nan 240.00,-1.60", "finite"),
     "a point of one coordinate": ("110.00,-1.60 240.00,-1.60", "110.00 240.00,-1.60", "not a point"),
     "a lane of one point": ("110.00,-1.60 240.00,-1.60", "110.00,-1.60", "two distinct points"),
+    "a lane round the world": ("110.00,-1.60 240.00,-1.60", "110.00,-1.60 4e7,-1.60", "longer than any lane"),
     "a lane without a shape": (' shape="110.00,-1.60 240.00,-1.60"', "", "'shape' is missing"),
     "an infinite phase": ('duration="30"', 'duration="inf"', "not a number from 0"),
     "a phase short of a letter": ('state="Ggr"', 'state="Gg"', "a letter for each"),

@@ -20,6 +20,7 @@ _KEPT = frozenset(["location", "edge", "lane", "junction", "request", "connectio
 _FUNCTIONS = frozenset(["normal", "internal", "connector", "crossing", "walkingarea"])
 _LIGHTS = frozenset("rugGyYsoO")
 _DEFAULT_WIDTH = 3.2  # [m]
+_LONGEST = 100_000.0  # [m] a longer lane is a mistake, and would be cut into very many segments
 
 
 def read_sumo_net(path: Path, *, turnarounds: bool = False, segment_length: float = SEGMENT_LENGTH) -> RoadNetwork:
@@ -110,6 +111,8 @@ def _lane(edge_id: str, element: Element) -> Lane:
         centre = Polyline(points)
     except ValueError as error:
         raise element.error(f"shape: {error}") from error
+    if centre.length > _LONGEST:
+        raise element.error(f"shape: {centre.length:.0f} m is longer than any lane ({_LONGEST:.0f} m)")
     if len(centre.points) < len(points):  # the polyline left out points that equal the one before
         height = dict(zip(reversed(points), reversed(elevation), strict=True))
         elevation = tuple(height[point] for point in centre.points)
