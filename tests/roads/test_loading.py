@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -26,8 +27,12 @@ def test_an_unknown_town_is_refused_with_the_towns_there_are(name: str) -> None:
     assert "\n" not in str(caught.value)
 
 
-@pytest.mark.parametrize("name", ["missing.net.xml", ".net.xml", "a\0b.net.xml"])
+@pytest.mark.parametrize(
+    "name", ["missing.net.xml", ".net.xml", "a\0b.net.xml", "a\nb.net.xml", "pipe.net.xml", "x.net.xml"]
+)
 def test_a_file_that_cannot_be_read_is_one_line(name: str, tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe.net.xml")  # must not wait for someone to write into it
+    (tmp_path / "x.net.xml").mkdir()
     with pytest.raises(MapError, match="cannot be read") as caught:
         load_map(tmp_path / name)
     assert "\n" not in str(caught.value)

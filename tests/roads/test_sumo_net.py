@@ -85,6 +85,7 @@ MISTAKES = {
     "a coordinate that is not a number": ("110.00,-1.60 240.00,-1.60", "110.00,nan 240.00,-1.60", "finite"),
     "a point of one coordinate": ("110.00,-1.60 240.00,-1.60", "110.00 240.00,-1.60", "not a point"),
     "a lane of one point": ("110.00,-1.60 240.00,-1.60", "110.00,-1.60", "two distinct points"),
+    "a lane round the world": ("110.00,-1.60 240.00,-1.60", "110.00,-1.60 4e7,-1.60", "longer than any lane"),
     "a lane without a shape": (' shape="110.00,-1.60 240.00,-1.60"', "", "'shape' is missing"),
     "an infinite phase": ('duration="30"', 'duration="inf"', "not a number from 0"),
     "a phase short of a letter": ('state="Ggr"', 'state="Gg"', "a letter for each"),
@@ -113,3 +114,29 @@ def test_a_mistake_is_named_with_file_line_and_cause(tmp_path: Path, mistake: st
         read(tmp_path, text)
     assert str(caught.value).startswith(f"{tmp_path / 'tiny.net.xml'}:{caught.value.line}: ")
     assert "\n" not in str(caught.value)
+
+
+def test_of_several_programs_of_a_light_the_last_one_counts(tmp_path: Path) -> None:
+    night = '<tlLogic id="C" type="static" programID="night" offset="7"><phase duration="90" state="OOo"/></tlLogic>'
+    network = read(tmp_path, altered('<junction id="A"', night + '<junction id="A"'))
+    assert (network.signals["C"].offset, network.signals["C"].phases) == (7.0, ((90.0, "OOo"),))
+
+
+def test_a_connection_may_stand_only_once(tmp_path: Path) -> None:
+    line = '<connection from=":C_3" to="out" fromLane="0" toLane="0" dir="r" state="M"/>'
+    with pytest.raises(MapError, match="connected to 'out_0' twice"):
+        read(tmp_path, altered(line, line + line))
+
+
+def test_a_path_that_leads_back_to_itself_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(MapError, match="leads back to itself"):
+        read(tmp_path, altered('via=":C_2_0" dir="l" state="m"', 'via=":C_1_0" dir="l" state="m"'))
+
+
+def test_a_lane_that_states_another_length_is_measured_along_its_shape_with_a_warning(tmp_path: Path) -> None:
+    network = read(tmp_path, altered('id="north_0" index="0" speed="13.89" length="50.00"', _FALSE_LENGTH))
+    assert network.lanes["north_0"].length == 50.0
+    assert any("state a length" in warning for warning in network.warnings)
+
+
+_FALSE_LENGTH = 'id="north_0" index="0" speed="13.89" length="80.00"'

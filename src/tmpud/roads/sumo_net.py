@@ -20,6 +20,7 @@ _KEPT = frozenset(["location", "edge", "lane", "junction", "request", "connectio
 _FUNCTIONS = frozenset(["normal", "internal", "connector", "crossing", "walkingarea"])
 _LIGHTS = frozenset("rugGyYsoO")
 _DEFAULT_WIDTH = 3.2  # [m]
+_LONGEST = 100_000.0  # [m] a longer lane is a mistake, and would be cut into very many segments
 
 
 def read_sumo_net(path: Path, *, turnarounds: bool = False, segment_length: float = SEGMENT_LENGTH) -> RoadNetwork:
@@ -35,24 +36,17 @@ def read_sumo_net(path: Path, *, turnarounds: bool = False, segment_length: floa
     functions = {edge_id: edge.choice("function", _FUNCTIONS, "normal") for edge_id, edge in edges.items()}
     _check_ends(edges, functions, nodes)
     rows = _lane_elements(edges)
-    lanes = {
-        lane.text("id"): _lane(edge_id, lane)
-        for edge_id, row in rows.items()
-        if functions[edge_id] == "normal"
-        for lane in row
-        if open_to_cars(lane)
-    }
+    lanes = _open_lanes(rows, functions)
     if not lanes:
         raise root.error("there is no lane that is open to cars")
     signals = _signals(found["tlLogic"])
     links = read_links(found["connection"], edges, rows, functions, lanes, turnarounds)
     _check_signals(links, signals)
-    used = {edges[lane.edge].text(end) for lane in lanes.values() for end in ("from", "to")}
     return RoadNetwork(
         name=path.name.removesuffix(".gz").removesuffix(".xml").removesuffix(".net"),
         lanes=lanes,
         connections=with_right_of_way(links, nodes, rows),
-        junctions={node_id: _junction(node_id, nodes[node_id]) for node_id in nodes if node_id in used},
+        junctions=_junctions(nodes, {edges[lane.edge].text(end) for lane in lanes.values() for end in ("from", "to")}),
         signals=signals,
         frame=_frame(found["location"]),
         source=str(path),
@@ -104,12 +98,24 @@ def _lane_elements(edges: dict[str, Element]) -> dict[str, list[Element]]:
     return rows
 
 
+def _open_lanes(rows: dict[str, list[Element]], functions: dict[str, str]) -> dict[str, Lane]:
+    return {
+        lane.text("id"): _lane(edge_id, lane)
+        for edge_id, row in rows.items()
+        if functions[edge_id] == "normal"
+        for lane in row
+        if open_to_cars(lane)
+    }
+
+
 def _lane(edge_id: str, element: Element) -> Lane:
     points, elevation = element.points("shape")
     try:
         centre = Polyline(points)
     except ValueError as error:
         raise element.error(f"shape: {error}") from error
+    if centre.length > _LONGEST:
+        raise element.error(f"shape: {centre.length:.0f} m is longer than any lane ({_LONGEST:.0f} m)")
     if len(centre.points) < len(points):  # the polyline left out points that equal the one before
         height = dict(zip(reversed(points), reversed(elevation), strict=True))
         elevation = tuple(height[point] for point in centre.points)
@@ -124,6 +130,11 @@ def _lane(edge_id: str, element: Element) -> Lane:
         change_left=names_cars(element, "changeLeft"),
         change_right=names_cars(element, "changeRight"),
     )
+
+
+def _junctions(nodes: dict[str, Element], used: set[str]) -> dict[str, Junction]:
+    """Return the junctions at which roads for cars start or end."""
+    return {node_id: _junction(node_id, node) for node_id, node in nodes.items() if node_id in used}
 
 
 def _junction(node_id: str, element: Element) -> Junction:

@@ -7,6 +7,7 @@ import hashlib
 import io
 import math
 import re
+import stat
 import zlib
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field
@@ -110,9 +111,12 @@ def read_xml(path: Path, root: str, keep: Collection[str]) -> tuple[Element, str
 
     A name that ends in ``.gz`` is unpacked; the digest is that of the stored bytes. Raises MapError.
     """
-    source = str(path)
+    source = str(path) if str(path).isprintable() else shown(str(path))
     try:
-        if path.stat().st_size > MAX_BYTES:
+        status = path.stat()
+        if not stat.S_ISREG(status.st_mode):
+            raise MapError(source, None, "cannot be read: not a regular file")
+        if status.st_size > MAX_BYTES:
             raise MapError(source, None, f"larger than {MAX_BYTES} bytes")
         stored = path.read_bytes()
     except (OSError, ValueError) as error:
