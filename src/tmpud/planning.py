@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 from tmpud.motion.mapping import StateMapping
 from tmpud.motion.path_planner import PathPlanner
@@ -14,6 +15,7 @@ from tmpud.roads.places import request as service_request
 from tmpud.symbols import LazyCost, OptimisticSafe, ServiceRequest
 from tmpud.task.asp_planner import AspPlanner, PlanReport
 from tmpud.task.domain import Domain
+from tmpud.task.facts import encodings
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,3 +43,14 @@ class Problem:
         """Return the optimal plan from the start; raises NoPlanError."""
         start = Domain(self.network, self.request).start_state()
         return AspPlanner(self.network, self.preset).solve(start, self.request, self.cost, self.safe)
+
+    def dump(self, folder: Path) -> tuple[Path, ...]:
+        """Write the encodings and the facts of the whole map into a folder; return the files for plain clingo."""
+        start = Domain(self.network, self.request).start_state()
+        planner = AspPlanner(self.network, self.preset, prune=False)
+        texts = dict(encodings())
+        texts["facts.lp"] = planner.instance(start, self.request, self.cost, self.safe)
+        folder.mkdir(parents=True, exist_ok=True)
+        for name, text in texts.items():
+            (folder / name).write_text(text, encoding="utf-8")
+        return tuple(folder / name for name in texts)

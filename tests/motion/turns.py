@@ -28,7 +28,7 @@ class Driven(NamedTuple):
 
 
 def drive_every_turn(network: RoadNetwork) -> list[Driven]:
-    """Drive each left and right turn of a map, from 30 m before it to 15 m behind it where the lanes are long enough."""
+    """Drive each left and right turn of a map, from 30 m before it to 15 m behind it as far as the lanes go."""
     turns = (c for c in network.connections if c.action is not Action.FORWARD)
     return [_drive(network, turn) for turn in turns]
 

@@ -13,9 +13,15 @@ ENCODING = ("driving.lp", "quality.lp", "show.lp")
 
 
 @cache
+def encodings() -> tuple[tuple[str, str], ...]:
+    """Return name and text of each part of the encoding that comes with the package."""
+    return tuple((name, files("tmpud.task").joinpath(name).read_text("utf-8")) for name in ENCODING)
+
+
+@cache
 def encoding() -> str:
-    """Return the text of the encoding that comes with the package."""
-    return "\n".join(files("tmpud.task").joinpath(name).read_text("utf-8") for name in ENCODING)
+    """Return the whole encoding."""
+    return "\n".join(text for _, text in encodings())
 
 
 def facts(domain: Domain, state: State, weights: Mapping[Transition, int]) -> str:
