@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 from tmpud.dynamics import EGO, VehicleLimits, step
 from tmpud.errors import SimulatorError
-from tmpud.geometry import Pose, wrap_angle
+from tmpud.geometry import Polyline, Pose, wrap_angle
 from tmpud.roads.network import RoadNetwork
 from tmpud.scene import Control, Scene, Vehicles, VehicleState
 from tmpud.simulators.traffic import AHEAD, SPREAD, WISHED_SPEED, Circulation
@@ -57,7 +57,9 @@ class SumoSimulator:
         self._headings: dict[str, deque[tuple[int, float]]] = {}
         self._ego: VehicleState | None = None
         self._steps = 0
-        self._wanted: list[str] = []  # the announced route, as long as SUMO does not take it
+        self._wanted: list[str] = []  # the announced roads, as long as SUMO does not take them
+        self._way: list[tuple[str, Polyline]] = []  # the announced lanes
+        self._lines: dict[str, Polyline | None] = {}
         self._sumo = sumo = _start(network, seed)
         self._fields = (
             sumo.VAR_POSITION3D, sumo.VAR_ANGLE, sumo.VAR_SPEED, sumo.VAR_ACCELERATION,
@@ -84,12 +86,13 @@ class SumoSimulator:
         self._clear(lane, station)
         edge = self._network.lanes[lane].edge
         index = self._network.lanes[lane].index
-        self._sumo.route.add("ego", [edge, *self._circulation.walk(edge, 2)])
+        self._sumo.route.add("ego", [edge])
         self._sumo.vehicle.add(EGO_ID, "ego", typeID="ego", departLane=str(index), departPos=f"{station:.2f}")
         self._sumo.vehicle.setSpeedMode(EGO_ID, 0)
         self._sumo.vehicle.setLaneChangeMode(EGO_ID, 0)
         room = self._network.lanes[lane].length - station - self._limits.length
         speed = min(WISHED_SPEED, math.sqrt(2 * GENTLE * max(room, 0.0)))
+        self._way = [(lane, self._network.lanes[lane].centre)]
         self._ego = VehicleState(EGO_ID, pose, lane, speed=speed, length=self._limits.length, width=self._limits.width)
         self._place(self._ego)
         self._advance()
@@ -107,8 +110,10 @@ class SumoSimulator:
         self._advance()
         return self._scene()
 
-    def announce(self, roads: Sequence[str]) -> None:
-        """Tell the others by which roads the ego means to go on, so that they give way to it at junctions."""
+    def announce(self, lanes: Sequence[str]) -> None:
+        """Tell the others by which lanes the ego means to go on, so that they give way to it at junctions."""
+        self._way = [(lane, line) for lane in dict.fromkeys(lanes) if (line := self._line(lane))]
+        roads = [self._network.lanes[lane].edge for lane in lanes if lane in self._network.lanes]
         self._wanted = [road for road, before in zip(roads, [None, *roads], strict=False) if road != before]
         self._take_route()
 
@@ -135,11 +140,18 @@ class SumoSimulator:
 
     # Inside ----------------------------------------------------------------------------------------------------
 
+    def _line(self, lane: str) -> Polyline | None:
+        """Return a lane's centre line, None for one within a junction that has no length."""
+        if lane not in self._lines:
+            points = [point[:2] for point in self._sumo.lane.getShape(lane)]
+            self._lines[lane] = Polyline(points) if len(set(points)) > 1 else None
+        return self._lines[lane]
+
     def _take_route(self) -> None:
         """Give SUMO the announced route, or try again later.
 
         Too near a road's end to stop, SUMO wants the route from the next road on; within a junction it takes none that
-        leaves the junction by another way. Until it does, the ego is put on whatever lane is below it.
+        leaves the junction by another way.
         """
         for route in (self._wanted, self._wanted[1:]):
             with contextlib.suppress(self._sumo.TraCIException):
@@ -148,13 +160,18 @@ class SumoSimulator:
                 return
 
     def _place(self, ego: VehicleState) -> None:
-        """Command SUMO to have the ego's front bumper where its pose says after the next step."""
+        """Command SUMO to have the ego's front bumper where its pose says after the next step.
+
+        SUMO is told the lane, which it would guess wrong where ways through a junction run side by side.
+        """
         if self._wanted:
             self._take_route()
         x, y, heading = ego.pose
-        front_x, front_y = x + ego.length / 2 * math.cos(heading), y + ego.length / 2 * math.sin(heading)
+        x, y = x + ego.length / 2 * math.cos(heading), y + ego.length / 2 * math.sin(heading)
+        lane = min(self._way, key=lambda way: abs(way[1].project(x, y)[1]))[0]
+        edge, _, index = lane.rpartition("_")
         angle = 90.0 - math.degrees(heading)
-        self._sumo.vehicle.moveToXY(EGO_ID, "", -1, front_x, front_y, angle, keepRoute=2 if self._wanted else 1)
+        self._sumo.vehicle.moveToXY(EGO_ID, edge, int(index), x, y, angle, keepRoute=2)
         self._sumo.vehicle.setSpeed(EGO_ID, ego.speed)
 
     def _advance(self) -> None:
