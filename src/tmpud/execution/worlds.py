@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Generator
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -20,6 +21,7 @@ from tmpud.scene import Outcome, Scene, Vehicles, VehicleState
 from tmpud.symbols import TaskPlan, Transition
 
 FRAME_INTERVAL = 0.1  # [s]
+ANNOUNCED = 200.0  # [m] of the way ahead
 AT_POSE = 0.5  # [m]
 MOVING = 0.1  # [m/s] slower than this is standing
 
@@ -112,7 +114,12 @@ class SimulatedWorld:
     def _announce(self, step: Transition, upcoming: TaskPlan) -> None:
         """Tell judge and simulator what the ego is about to do."""
         segments = [self._network.segments[s.segment] for s in (step.state, *(t.next_state for t in (step, *upcoming)))]
-        self._simulator.announce([self._network.lanes[segment.lane].edge for segment in segments])
+        ahead, length = [self._network.lanes[segments[0].lane].edge], 0.0
+        for before, segment in pairwise(segments):
+            length += before.end - before.start
+            if length < ANNOUNCED:
+                ahead.append(self._network.lanes[segment.lane].edge)
+        self._simulator.announce(ahead)
         if step.action.is_merge:
             self._judge.merge_began(self.scene, segments[0].lane, segments[1].lane)
 
