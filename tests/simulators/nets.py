@@ -9,17 +9,18 @@ from pathlib import Path
 
 Row = tuple[str, ...]
 
-# Two lanes each way from W by way of J1 and J2 to E; at J2 the left lane turns left into a road to N. At W, E and N
-# one turns round.
+# Two lanes each way from W by way of J1 and J2 to E; at J2 the left lane turns left into a road to N. Beyond W, E and
+# N one-way roads lead back, so that traffic can circulate.
 TWO_BLOCKS_NODES = (("W", "0", "0"), ("J1", "118", "0"), ("J2", "236", "0"), ("E", "354", "0"), ("N", "236", "118"))
 TWO_BLOCKS_EDGES = (
     ("a", "W", "J1", "2"), ("b", "J1", "J2", "2"), ("c", "J2", "E", "2"), ("goal", "J2", "N", "1"),
-    ("-a", "J1", "W", "2"), ("-b", "J2", "J1", "2"), ("-c", "E", "J2", "2"), ("-goal", "N", "J2", "1"),
+    ("-a", "J1", "W", "2"), ("-b", "J2", "J1", "2"), ("-c", "E", "J2", "2"), ("west", "N", "W", "1"),
+    ("east", "E", "N", "1"),
 )  # fmt: skip
 TWO_BLOCKS_LINKS = (
     ("a", "b", "0", "0"), ("a", "b", "1", "1"), ("b", "c", "0", "0"), ("b", "goal", "1", "0"),
     ("-c", "-b", "0", "0"), ("-c", "-b", "1", "1"), ("-b", "-a", "0", "0"), ("-b", "-a", "1", "1"),
-    ("-goal", "-b", "0", "0"),
+    ("goal", "west", "0", "0"), ("east", "west", "0", "0"), ("west", "a", "0", "0"), ("c", "east", "0", "0"),
 )  # fmt: skip
 
 # A road out of a ring of one-way roads into a dead end.
