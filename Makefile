@@ -21,7 +21,7 @@ pytest: $(VENV)/.developing
 	$(BIN)/pytest -n 2
 
 verify: $(VENV)/.developing
-	$(BIN)/python tools/verify.py
+	$(BIN)/python -m tools.verify
 
 town: $(VENV)/.developing
 	$(BIN)/python tools/build_towns.py

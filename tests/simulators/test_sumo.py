@@ -153,7 +153,7 @@ def test_signals_are_told_by_one_letter_for_each_link() -> None:
 def test_a_start_on_a_dead_end_is_no_trouble(spur_net: Path) -> None:
     with SumoSimulator(load_map(spur_net), traffic=3, seed=1, warm_up=1.0) as town:
         scene = town.reset("spur_0", 30.0)
-        town.announce(["spur"])
+        town.announce(["spur_0"])
         for _ in range(20):
             scene = town.step(COAST)
         assert scene.ego.lane == "spur_0"

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Generator
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 
@@ -113,15 +112,16 @@ class SimulatedWorld:
 
     def _announce(self, step: Transition, upcoming: TaskPlan) -> None:
         """Tell judge and simulator what the ego is about to do."""
-        segments = [self._network.segments[s.segment] for s in (step.state, *(t.next_state for t in (step, *upcoming)))]
-        ahead, length = [self._network.lanes[segments[0].lane].edge], 0.0
-        for before, segment in pairwise(segments):
-            length += before.end - before.start
+        lanes, length = list(self._motion.lanes(step)), 0.0
+        for following in upcoming:
+            here = self._network.segments[following.state.segment]
+            length += here.end - here.start
             if length < ANNOUNCED:
-                ahead.append(self._network.lanes[segment.lane].edge)
-        self._simulator.announce(ahead)
+                lanes += self._motion.lanes(following)
+        self._simulator.announce(lanes)
+        origin, target = (self._network.segments[s.segment].lane for s in (step.state, step.next_state))
         if step.action.is_merge:
-            self._judge.merge_began(self.scene, segments[0].lane, segments[1].lane)
+            self._judge.merge_began(self.scene, origin, target)
 
     def _follow(self, scene: Scene) -> None:
         """Take in the next scene; raises InvalidStateError where the ego in it is not finite."""

@@ -93,7 +93,9 @@ def build_route(
 
 
 def _speed_limit(move: Move) -> float:
-    return math.inf if isinstance(move, Cross) else move.lane.speed
+    if isinstance(move, Cross):
+        return math.inf
+    return min(move.lane.speed, move.target.speed) if isinstance(move, Change) else move.lane.speed
 
 
 def _sampled(

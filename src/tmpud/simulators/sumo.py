@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 from tmpud.dynamics import EGO, VehicleLimits, step
 from tmpud.errors import SimulatorError
-from tmpud.geometry import Pose, wrap_angle
+from tmpud.geometry import Polyline, Pose, wrap_angle
 from tmpud.roads.network import RoadNetwork
 from tmpud.scene import Control, Scene, Vehicles, VehicleState
 from tmpud.simulators.traffic import AHEAD, SPREAD, WISHED_SPEED, Circulation
@@ -33,7 +33,8 @@ EXTEND_EVERY = 100  # steps between looks at the cars' routes
 YAW_WINDOW = 11  # steps over which a yaw rate is measured
 CYCLE = 90.0  # [s] about one cycle of the lights
 PATIENCE = 60.0  # [s] simulated
-ROOM_BEHIND, ROOM_AHEAD = 15.0, 25.0  # [m] around the place where the ego appears
+ROOM_BEHIND, ROOM_AHEAD, ROOM_BESIDE = 15.0, 25.0, 2.5  # [m] around the place where the ego appears
+JOINT = 0.3  # [m] two lanes that meet are equally near to a point this near to their joint
 GENTLE = 2.0  # [m/s^2] braking
 OPTIONS = (
     "--no-step-log", "--no-warnings", "--duration-log.disable", "--collision.action", "none",
@@ -57,7 +58,9 @@ class SumoSimulator:
         self._headings: dict[str, deque[tuple[int, float]]] = {}
         self._ego: VehicleState | None = None
         self._steps = 0
-        self._wanted: list[str] = []  # the announced route, as long as SUMO does not take it
+        self._roads: list[str] = []  # the announced roads
+        self._way: list[tuple[str, Polyline]] = []  # the announced lanes
+        self._lines: dict[str, Polyline | None] = {}
         self._sumo = sumo = _start(network, seed)
         self._fields = (
             sumo.VAR_POSITION3D, sumo.VAR_ANGLE, sumo.VAR_SPEED, sumo.VAR_ACCELERATION,
@@ -81,15 +84,16 @@ class SumoSimulator:
     def reset(self, lane: str, station: float) -> Scene:
         """Put the ego on a lane at the speed of the flow, or such that it could stop before the lane ends."""
         pose = self._network.lanes[lane].centre.pose_at(station)
-        self._clear(lane, station)
+        self._clear(pose)
         edge = self._network.lanes[lane].edge
         index = self._network.lanes[lane].index
-        self._sumo.route.add("ego", [edge, *self._circulation.walk(edge, 2)])
+        self._sumo.route.add("ego", [edge])
         self._sumo.vehicle.add(EGO_ID, "ego", typeID="ego", departLane=str(index), departPos=f"{station:.2f}")
         self._sumo.vehicle.setSpeedMode(EGO_ID, 0)
         self._sumo.vehicle.setLaneChangeMode(EGO_ID, 0)
         room = self._network.lanes[lane].length - station - self._limits.length
-        speed = min(WISHED_SPEED, math.sqrt(2 * GENTLE * max(room, 0.0)))
+        speed = min(WISHED_SPEED, self._network.lanes[lane].speed, math.sqrt(2 * GENTLE * max(room, 0.0)))
+        self._way, self._roads = [(lane, self._network.lanes[lane].centre)], [edge]
         self._ego = VehicleState(EGO_ID, pose, lane, speed=speed, length=self._limits.length, width=self._limits.width)
         self._place(self._ego)
         self._advance()
@@ -107,10 +111,13 @@ class SumoSimulator:
         self._advance()
         return self._scene()
 
-    def announce(self, roads: Sequence[str]) -> None:
-        """Tell the others by which roads the ego means to go on, so that they give way to it at junctions."""
-        self._wanted = [road for road, before in zip(roads, [None, *roads], strict=False) if road != before]
-        self._take_route()
+    def announce(self, lanes: Sequence[str]) -> None:
+        """Tell the others by which lanes the ego means to go on, so that they give way to it at junctions."""
+        self._way = [(lane, line) for lane in dict.fromkeys(lanes) if (line := self._line(lane))]
+        way = [lane for lane in lanes if lane in self._network.lanes]
+        way += self._onward(way[-1])
+        roads = [self._network.lanes[lane].edge for lane in way]
+        self._roads = [road for road, before in zip(roads, [None, *roads], strict=False) if road != before]
 
     def everyone(self) -> Vehicles:
         """Return all other vehicles of the town, for pictures and records."""
@@ -135,27 +142,52 @@ class SumoSimulator:
 
     # Inside ----------------------------------------------------------------------------------------------------
 
-    def _take_route(self) -> None:
-        """Give SUMO the announced route, or try again later.
+    def _onward(self, lane: str, roads: int = 2) -> list[str]:
+        """Return some lanes that follow a lane: SUMO takes away a vehicle that comes to the end of its route."""
+        found: list[str] = []
+        while len(found) < roads and (ways := self._network.outgoing(lane)):
+            lane = ways[0].to_lane
+            found.append(lane)
+        return found
 
-        Too near a road's end to stop, SUMO wants the route from the next road on; within a junction it takes none that
-        leaves the junction by another way. Until it does, the ego is put on whatever lane is below it.
+    def _line(self, lane: str) -> Polyline | None:
+        """Return a lane's centre line, None for one within a junction that has no length."""
+        if lane not in self._lines:
+            points = [point[:2] for point in self._sumo.lane.getShape(lane)]
+            self._lines[lane] = Polyline(points) if len(set(points)) > 1 else None
+        return self._lines[lane]
+
+    def _keep_route(self) -> None:
+        """Give SUMO the announced route where it has another, or try again at the next step.
+
+        SUMO takes a route only from the road on which it sees the ego, or, too near that road's end to stop, from the
+        next one; and within a junction none that leaves it by another way.
         """
-        for route in (self._wanted, self._wanted[1:]):
+        if self._sumo.vehicle.getRoute(EGO_ID)[-1] == self._roads[-1]:
+            return
+        for first in range(len(self._roads)):
             with contextlib.suppress(self._sumo.TraCIException):
-                self._sumo.vehicle.setRoute(EGO_ID, route)
-                self._wanted = []
+                self._sumo.vehicle.setRoute(EGO_ID, self._roads[first:])
                 return
 
     def _place(self, ego: VehicleState) -> None:
-        """Command SUMO to have the ego's front bumper where its pose says after the next step."""
-        if self._wanted:
-            self._take_route()
+        """Command SUMO to have the ego's front bumper where its pose says after the next step.
+
+        SUMO is told the lane, which it would guess wrong where ways through a junction run side by side.
+        """
+        self._keep_route()
         x, y, heading = ego.pose
-        front_x, front_y = x + ego.length / 2 * math.cos(heading), y + ego.length / 2 * math.sin(heading)
+        x, y = x + ego.length / 2 * math.cos(heading), y + ego.length / 2 * math.sin(heading)
+        edge, _, index = self._lane_at(x, y).rpartition("_")
         angle = 90.0 - math.degrees(heading)
-        self._sumo.vehicle.moveToXY(EGO_ID, "", -1, front_x, front_y, angle, keepRoute=2 if self._wanted else 1)
+        self._sumo.vehicle.moveToXY(EGO_ID, edge, int(index), x, y, angle, keepRoute=2)
         self._sumo.vehicle.setSpeed(EGO_ID, ego.speed)
+
+    def _lane_at(self, x: float, y: float) -> str:
+        """Return the announced lane nearest to a point, the last of those that are equally near."""
+        offsets = [abs(line.project(x, y)[1]) for _, line in self._way]
+        nearest = min(offsets)
+        return next(lane for (lane, _), d in zip(self._way[::-1], offsets[::-1], strict=True) if d < nearest + JOINT)
 
     def _advance(self) -> None:
         self._sumo.simulationStep()
@@ -185,28 +217,34 @@ class SumoSimulator:
             if at >= 0 and len(route) - at < AHEAD // 2:
                 self._sumo.vehicle.setRoute(vehicle, [*route[at:], *self._circulation.walk(route[-1])])
 
-    def _clear(self, lane: str, station: float) -> None:
-        """Wait until the ego's place on a lane is free, at most PATIENCE seconds, then take away who stands there."""
+    def _clear(self, pose: Pose) -> None:
+        """Wait until the ego's place is free, at most PATIENCE seconds, then take away who stands there."""
         for _ in range(round(PATIENCE / DT)):
-            if not self._standing_at(lane, station):
+            if not self._standing_at(pose):
                 return
             self._advance()
-        for vehicle in self._standing_at(lane, station):
+        for vehicle in self._standing_at(pose):
             self._sumo.vehicle.remove(vehicle)
 
-    def _standing_at(self, lane: str, station: float) -> list[str]:
-        """Return the cars on a lane so near to a place that the ego cannot appear there."""
-        low, high = station - ROOM_BEHIND, station + ROOM_AHEAD
-        on_lane = self._sumo.lane.getLastStepVehicleIDs(lane)
-        return [v for v in on_lane if low < self._sumo.vehicle.getLanePosition(v) < high]
+    def _standing_at(self, pose: Pose) -> list[str]:
+        """Return the cars so near to a place on the road that the ego cannot appear there."""
+        others = self.everyone()
+        dx, dy = others.x - pose.x, others.y - pose.y
+        along = dx * math.cos(pose.heading) + dy * math.sin(pose.heading)
+        across = dy * math.cos(pose.heading) - dx * math.sin(pose.heading)
+        there = (along > -ROOM_BEHIND) & (along < ROOM_AHEAD) & (abs(across) < ROOM_BESIDE)
+        return [others.ids[i] for i in there.nonzero()[0]]
 
     def _scene(self) -> Scene:
         sumo, ego = self._sumo, self._ego
         seen: dict[str, dict[int, Any]] = sumo.vehicle.getContextSubscriptionResults(EGO_ID)
-        if ego is None or EGO_ID not in seen:
+        if ego is None or EGO_ID not in sumo.vehicle.getIDList():
             raise SimulatorError("the ego vanished from the simulation")
-        here = seen.pop(EGO_ID)
-        self._ego = ego = replace(ego, lane=here[sumo.VAR_LANE_ID], z=here[sumo.VAR_POSITION3D][2])
+        seen.pop(EGO_ID, None)
+        x, y, heading = ego.pose
+        half = ego.length / 2
+        lane = self._lane_at(x + half * math.cos(heading), y + half * math.sin(heading))
+        self._ego = ego = replace(ego, lane=lane, z=sumo.vehicle.getPosition3D(EGO_ID)[2])
         signals = {light: sumo.trafficlight.getRedYellowGreenState(light) for light in self._network.signals}
         return Scene(round(sumo.simulation.getTime(), 3), ego, self._vehicles(seen), signals)
 

@@ -1,0 +1,44 @@
+"""How much is checked, and on which maps."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from tmpud.roads import shipped_towns
+from tools.verification.figures import ROOT
+
+BESIDE = ROOT.parent / "shared" / "maps"  # maps that do not ship with the package; used where they are present
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Options:
+    """The n of each section; the defaults are the full figures."""
+
+    given_maps: tuple[str, ...] = ()  # net files of the user's
+    missions: int = 20  # per map and algorithm
+    repeats: int = 10
+    graphs: int = 2_000
+    cases: int = 10_000
+    mutants: int = 300  # per map
+    seconds: float = 3600.0  # [s] simulated, of traffic
+    traffic: int = 120  # vehicles in missions
+
+    @property
+    def maps(self) -> tuple[str, ...]:
+        """The shipped towns, the maps beside the checkout, and the user's."""
+        return (*shipped_towns(), *_beside("*.net.xml"), *self.given_maps)
+
+    @property
+    def mission_maps(self) -> tuple[str, ...]:
+        """The maps on which missions are driven."""
+        return (*shipped_towns(), *(self.given_maps or _beside("Town05.net.xml")))
+
+
+def map_name(source: str) -> str:
+    """Return what a map is called in a report, whatever folder it lies in."""
+    return Path(source).name.removesuffix(".gz").removesuffix(".net.xml")
+
+
+def _beside(pattern: str) -> list[str]:
+    return sorted(str(file) for file in BESIDE.glob(pattern))
