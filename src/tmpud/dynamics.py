@@ -49,6 +49,8 @@ def step(state: VehicleState, control: Control, dt: float, limits: VehicleLimits
     """
     if not within_limits(control, limits):
         raise InvalidStateError(f"command {control} is not within the vehicle's limits")
+    if not all(map(math.isfinite, (*state.pose, state.speed))):
+        raise InvalidStateError(f"the ego's state is not finite: {state.pose}, {state.speed} m/s")
     half = limits.wheelbase / 2
     speed = max(state.speed + control.acceleration * dt, 0.0)
     mean_speed = (state.speed + speed) / 2

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tmpud.errors import InfeasibleMotionError
+from tmpud.errors import InfeasibleMotionError, InvalidStateError
 from tmpud.events import Event, Frame, Judged
 from tmpud.execution.guard import Guard
 from tmpud.motion.mapping import StateMapping
@@ -124,7 +124,9 @@ class SimulatedWorld:
             self._judge.merge_began(self.scene, origin, target)
 
     def _follow(self, scene: Scene) -> None:
-        """Take in the next scene."""
+        """Take in the next scene; raises InvalidStateError where the ego in it is not finite."""
+        if not all(map(math.isfinite, (*scene.ego.pose, scene.ego.speed, scene.time))):
+            raise InvalidStateError(f"the simulator reports an ego that is not finite: {scene.ego}")
         before, now = self.scene.ego.pose, scene.ego.pose
         dt = scene.time - self.scene.time
         self.distance += math.hypot(now.x - before.x, now.y - before.y)
@@ -136,11 +138,12 @@ class SimulatedWorld:
     def _ended(self, verdicts: list[Judged]) -> Outcome | None:
         if any(verdict.kind == "collision" for verdict in verdicts):
             return Outcome.COLLIDE
+        overtime = self.time - self.began > self._limits.total
         if self._guard.refused is not None:
-            return Outcome.INVALID if self.scene.ego.speed < MOVING else None
+            return Outcome.INVALID if overtime or self.scene.ego.speed < MOVING else None
         if self._standing > self._limits.standing:
             return Outcome.BLOCKED
-        return Outcome.TIME_LIMIT if self.time - self.began > self._limits.total else None
+        return Outcome.TIME_LIMIT if overtime else None
 
     def _seen(self) -> Generator[Event, None, None]:
         """Yield a frame at each whole FRAME_INTERVAL."""

@@ -49,12 +49,9 @@ class Change(NamedTuple):
 
     @property
     def length(self) -> float:
-        """Arc length of the curve: the road's length and the lateral way, in ten chords."""
-        x, y, _ = self.lane.centre.pose_at(self.start)
-        sideways = abs(self.target.centre.project(x, y)[1])
-        along = (self.end - self.start) * (1 + self.target.length / self.lane.length) / 2
-        shares = [smoothstep(i / 10) for i in range(11)]
-        return sum(math.hypot(along / 10, sideways * (b - a)) for a, b in itertools.pairwise(shares))
+        """Arc length of the curve, in ten chords."""
+        points = outline(self, (self.end - self.start) / 10)
+        return sum(math.dist(a, b) for a, b in itertools.pairwise(points))
 
 
 Move = Follow | Cross | Change
