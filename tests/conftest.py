@@ -6,6 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.simulators import nets
+
 SHARED_MAPS = Path(__file__).resolve().parents[2] / "shared" / "maps"
 
 
@@ -16,3 +18,15 @@ def carla_net(request: pytest.FixtureRequest) -> Path:
     if not path.is_file():
         pytest.skip(f"{path.name} is not there")
     return path
+
+
+@pytest.fixture(scope="session")
+def blocks_net(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the net of two blocks with two lanes each way, before a left turn."""
+    return nets.two_blocks(tmp_path_factory.mktemp("nets"))
+
+
+@pytest.fixture(scope="session")
+def spur_net(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the net of a ring of roads, from which one leads into a dead end."""
+    return nets.spur(tmp_path_factory.mktemp("nets"))

@@ -24,9 +24,9 @@ OPTIONS = {
     "default.junctions.radius": "9",  # [m] stop lines well back, so that waiting and crossing cars do not touch
     "junctions.corner-detail": "8",
     "junctions.internal-link-detail": "10",
-    "tls.cycle.time": "80",  # [s]
+    "tls.cycle.time": "90",  # [s]
     "tls.yellow.time": "3",  # [s]
-    "tls.allred.time": "5",  # [s] long enough for left-turning cars to leave the crossing
+    "tls.allred.time": "7",  # [s] long enough for left-turning cars to leave the crossing
     "offset.disable-normalization": "true",
 }
 

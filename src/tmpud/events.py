@@ -134,8 +134,8 @@ def to_json(event: Event) -> dict[str, Any]:
 
 def from_json(row: Mapping[str, Any]) -> Event:
     """Return the event a JSON object stands for; RunFileError where it stands for none."""
-    values = dict(row)
     try:
+        values = dict(row)
         kind = _KINDS[values.pop("event")]
         return kind(**{name: _RESTORE.get(name, _tuples)(value) for name, value in values.items()})
     except (KeyError, TypeError, ValueError) as error:

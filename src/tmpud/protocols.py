@@ -79,8 +79,8 @@ class Simulator(Protocol):
         """Move the ego by one command for one step; the others react."""
         ...
 
-    def announce(self, roads: Sequence[str]) -> None:
-        """Tell the others by which roads the ego means to go on."""
+    def announce(self, lanes: Sequence[str]) -> None:
+        """Tell the others by which lanes, those through junctions included, the ego means to go on."""
         ...
 
     def everyone(self) -> Vehicles:

@@ -5,7 +5,9 @@ from __future__ import annotations
 import gzip
 import json
 import re
+import zlib
 from collections.abc import Iterator
+from itertools import chain, islice
 from pathlib import Path
 
 from tmpud.errors import RequestError, RunFileError
@@ -18,12 +20,16 @@ NAME = re.compile(r"[a-z0-9][a-z0-9._-]{0,63}")
 
 
 def record(events: Iterator[Event], folder: Path) -> Iterator[Event]:
-    """Write every event into a run folder while passing it on; what was written stays if the run breaks off."""
+    """Write every event into a run folder while passing it on; what was written stays if the run breaks off.
+
+    Nothing is written, and no earlier run lost, where there is no first event.
+    """
     if not NAME.fullmatch(folder.name):
         raise RequestError(f"{folder.name!r} is no name for a run: small letters, digits, '.', '_' and '-', at most 64")
+    first = list(islice(events, 1))
     folder.mkdir(parents=True, exist_ok=True)
     with (folder / LOG).open("wb") as raw, gzip.GzipFile("", "wb", 6, raw, mtime=0) as log:
-        for event in events:
+        for event in chain(first, events):
             log.write(_line(to_json(event)))
             yield event
 
@@ -46,8 +52,10 @@ def read_run(folder: Path) -> Iterator[Event]:
                 yield event
     except FileNotFoundError as error:
         raise RunFileError(f"{path}: no such run; a run folder holds {LOG}") from error
-    except (OSError, EOFError, ValueError, RunFileError) as error:
+    except (OSError, EOFError, ValueError, zlib.error, RunFileError) as error:
         raise RunFileError(f"{path}:{read + 1}: {error}") from error
+    if not read:
+        raise RunFileError(f"{path}:1: the file is empty")
 
 
 def _line(row: dict[str, object]) -> bytes:

@@ -27,7 +27,7 @@ def crossing(tmp_path: Path) -> RoadNetwork:
 def test_lanes_for_pedestrians_are_left_out_and_the_others_keep_their_index(crossing: RoadNetwork) -> None:
     assert crossing.edges["in"] == ("in_1", "in_2")
     assert [crossing.lanes[lane].index for lane in crossing.edges["in"]] == [1, 2]
-    assert "1 lanes are closed to cars and left out" in crossing.warnings
+    assert "lanes closed to cars, left out: 1" in crossing.warnings
 
 
 def test_a_left_turn_with_a_waiting_point_has_its_whole_path(crossing: RoadNetwork) -> None:
@@ -136,7 +136,7 @@ def test_a_path_that_leads_back_to_itself_is_refused(tmp_path: Path) -> None:
 def test_a_lane_that_states_another_length_is_measured_along_its_shape_with_a_warning(tmp_path: Path) -> None:
     network = read(tmp_path, altered('id="north_0" index="0" speed="13.89" length="50.00"', _FALSE_LENGTH))
     assert network.lanes["north_0"].length == 50.0
-    assert any("state a length" in warning for warning in network.warnings)
+    assert any("stated length" in warning for warning in network.warnings)
 
 
 _FALSE_LENGTH = 'id="north_0" index="0" speed="13.89" length="80.00"'

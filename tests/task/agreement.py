@@ -14,7 +14,7 @@ from tmpud.roads.network import RoadNetwork
 from tmpud.symbols import Place, ServiceRequest, State, TaskPlan, Transition
 from tmpud.task.asp_planner import AspPlanner, PlanReport
 
-BUDGET = 4000  # [steps] where enumeration needs more, Dijkstra alone is compared with
+BUDGET = 2000  # [steps] where enumeration needs more, Dijkstra alone is compared with
 REPLANS = 3
 
 

@@ -26,17 +26,19 @@ def communicate_refusals(beta: float) -> Communicate:
             return plan
         estimate = mind.world.estimate(step)
         yield mind.estimated(step, estimate)
-        if estimate.safe >= beta:
+        if estimate.safe >= beta or mind.settled:
             return plan
         mind.known.forbid(step, estimate.safe, mind.world.time)
         reason = f"Safe({step.action}) = {estimate.safe:.2f} < {beta:g}"
         try:
             new_plan = mind.plan(step.state)
         except NoPlanError:
-            if mind.preset.unsafe_fallback == "force":
-                return plan
-            new_plan = mind.hold_lane(step.state)
+            new_plan = plan if mind.preset.unsafe_fallback == "force" else mind.hold_lane(step.state)
+            if not new_plan:
+                raise
             reason += ", and no other plan is left: hold the lane"
+        if new_plan == plan:
+            return plan
         yield from mind.replanned(step, estimate.safe, new_plan, reason)
         return new_plan
 

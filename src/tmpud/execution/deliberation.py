@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Generator
 
+from tmpud.errors import NoPlanError
 from tmpud.events import Estimated, Event, Planned, Refused
 from tmpud.execution.knowledge import Knowledge
 from tmpud.presets import Preset
@@ -28,6 +29,8 @@ class Deliberation:
         self.preset: Preset = planner.preset
         self.known = Knowledge(motion.path_length, self.preset)
         self.replans = 0
+        self._motion_length = motion.path_length
+        self._tried: list[TaskPlan] = []  # plans given up since the car last moved
 
     def plan(self, state: State) -> TaskPlan:
         """Return P^t(s, s^g, Cost, Safe); raises NoPlanError."""
@@ -45,19 +48,53 @@ class Deliberation:
         new_sum, old_sum = (sum(utility.total(plan)) for plan in (new, old))
         return new != old and old_sum - new_sum >= self.preset.hysteresis - 1e-9
 
-    def gives_up(self, tried: list[TaskPlan]) -> bool:
-        """Whether the plan changed too often without motion."""
-        return len(tried) >= self.preset.max_replans
+    @property
+    def settled(self) -> bool:
+        """Whether the plan changed so often without motion that it stays as it is until the car has moved."""
+        return len(self._tried) >= self.preset.max_replans
+
+    def change(self, plan: TaskPlan, new_plan: TaskPlan) -> Generator[Event, None, TaskPlan]:
+        """Return the plan that takes a plan's place: the new one, or at last the most conservative of all."""
+        self._tried.append(plan)
+        if not self.settled:
+            return new_plan
+        chosen = self.most_conservative([*self._tried, new_plan])
+        if chosen != new_plan:
+            count = len(self._tried)
+            yield self.planned(chosen, f"of {count + 1} plans since the car moved it is the most conservative")
+        return chosen
 
     def most_conservative(self, plans: list[TaskPlan]) -> TaskPlan:
         """Return the plan with the least safety penalty, the latest of equals."""
         utility = Utility(self.preset, self.known.cost, self.known.safe, {})
         return min(reversed(plans), key=lambda plan: utility.total(plan).penalty)
 
+    def drop_first(self, plan: TaskPlan) -> Generator[Event, None, TaskPlan]:
+        """Return the rest of a plan; where it ended short of the goal, as holding a lane does, plan anew."""
+        self._tried.clear()
+        here = plan[0].next_state
+        if plan[1:] or self.domain.is_goal(here):
+            return plan[1:]
+        new_plan = self.plan_or_hold(here)
+        yield self.planned(new_plan, "the lane was held")
+        return new_plan
+
+    def plan_or_hold(self, state: State) -> TaskPlan:
+        """Return P^t's plan, or where it has none one step that keeps the lane; NoPlanError where the lane ends."""
+        try:
+            return self.plan(state)
+        except NoPlanError:
+            if held := self.hold_lane(state):
+                return held
+            raise
+
     def hold_lane(self, state: State) -> TaskPlan:
-        """Return one step that keeps the lane, or follows it through a junction; none where the lane ends."""
+        """Return one step that keeps the lane, or follows it through a junction; none where the lane ends.
+
+        What was refused as unsafe is driven all the same: there is nothing else to do in a lane.
+        """
         ways = [way for way in self.domain.successors(state) if not way.action.is_merge]
-        drivable = [way for way in ways if self.known.cost[way] < math.inf]
+        drivable = [way for way in ways if self._motion_length(way) < math.inf]
         return tuple(sorted(drivable, key=lambda way: (way.action is not Action.FORWARD, way.next_state))[:1])
 
     # Events ----------------------------------------------------------------------------------------------------

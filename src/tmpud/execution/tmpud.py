@@ -26,14 +26,13 @@ def run_tmpud(start: State, mind: Deliberation, communicate: Communicate) -> Gen
     # Line 3
     plan = mind.plan(start)
     yield mind.planned(plan, "start")
-    tried: list[TaskPlan] = []  # plans since the car last moved
     # Line 4
     while plan:
         step = plan[0]
         # Lines 5 to 7
         new_plan = yield from communicate(plan, mind)
         # Line 8
-        if new_plan == plan or mind.gives_up(tried):
+        if new_plan == plan:
             # Lines 9 to 14
             estimated = mind.world.is_estimated(step)
             outcome = yield from mind.world.execute(step, plan[1:])
@@ -46,11 +45,10 @@ def run_tmpud(start: State, mind: Deliberation, communicate: Communicate) -> Gen
                 return outcome
             else:
                 # Line 15
-                plan, tried = plan[1:], []
+                plan = yield from mind.drop_first(plan)
         else:
-            tried.append(plan)
             # Line 17
-            plan = mind.most_conservative([*tried, new_plan]) if mind.gives_up(tried) else new_plan
+            plan = yield from mind.change(plan, new_plan)
     return Outcome.DONE
 
 
@@ -64,6 +62,8 @@ def communicate_safety(plan: TaskPlan, mind: Deliberation) -> Generator[Event, N
     yield mind.estimated(step, estimate)
     # Line 6
     mind.known.learn(step, estimate.safe, mind.world.path_length(step), mind.world.time)
+    if mind.settled:
+        return plan
     # Line 7
     new_plan = mind.plan(step.state)
     if not mind.is_better(new_plan, plan):

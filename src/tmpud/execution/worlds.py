@@ -20,6 +20,7 @@ from tmpud.scene import Outcome, Scene, Vehicles, VehicleState
 from tmpud.symbols import TaskPlan, Transition
 
 FRAME_INTERVAL = 0.1  # [s]
+ANNOUNCED = 200.0  # [m] of the way ahead
 AT_POSE = 0.5  # [m]
 MOVING = 0.1  # [m/s] slower than this is standing
 
@@ -111,10 +112,16 @@ class SimulatedWorld:
 
     def _announce(self, step: Transition, upcoming: TaskPlan) -> None:
         """Tell judge and simulator what the ego is about to do."""
-        segments = [self._network.segments[s.segment] for s in (step.state, *(t.next_state for t in (step, *upcoming)))]
-        self._simulator.announce([self._network.lanes[segment.lane].edge for segment in segments])
+        lanes, length = list(self._motion.lanes(step)), 0.0
+        for following in upcoming:
+            here = self._network.segments[following.state.segment]
+            length += here.end - here.start
+            if length < ANNOUNCED:
+                lanes += self._motion.lanes(following)
+        self._simulator.announce(lanes)
+        origin, target = (self._network.segments[s.segment].lane for s in (step.state, step.next_state))
         if step.action.is_merge:
-            self._judge.merge_began(self.scene, segments[0].lane, segments[1].lane)
+            self._judge.merge_began(self.scene, origin, target)
 
     def _follow(self, scene: Scene) -> None:
         """Take in the next scene."""

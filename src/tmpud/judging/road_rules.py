@@ -10,6 +10,8 @@ from tmpud.judging.rules import JudgingRules, Kind, Rising, Verdict
 from tmpud.roads.network import LaneConnection, RoadNetwork
 from tmpud.scene import Scene
 
+CAR_LENGTH = 5.0  # [m]
+
 _Curve = tuple[Polyline, float]  # a centre line and the lane's width [m]
 
 
@@ -43,15 +45,22 @@ class OffLane:
         """Yield the lane, then its neighbours and what it is joined to, the likeliest first."""
         if lane in self._network.internal:
             way = self._network.connections[self._network.internal[lane]]
-            ways = [way, *self._ways[way.junction]]
+            ways = [way, *self._ways[way.junction], *self._leading_to(way.from_lane)]
         elif lane in self._network.lanes:
             row = (lane, *self._network.edges[self._network.lanes[lane].edge])
             yield from (self._curve(name) for name in row)
-            ways = [*self._network.outgoing(lane), *self._network.incoming(lane)]
+            ways = [*self._network.outgoing(lane), *self._leading_to(lane)]
         else:
             ways = []
         for way in ways:
             yield from self._along(way)
+
+    def _leading_to(self, lane: str) -> Iterator[LaneConnection]:
+        """Yield the ways into a lane, and those into lanes before it that are shorter than a car."""
+        for way in self._network.incoming(lane):
+            yield way
+            if self._network.lanes[way.from_lane].length < CAR_LENGTH:
+                yield from self._leading_to(way.from_lane)
 
     def _along(self, way: LaneConnection) -> Iterator[_Curve]:
         yield way.path, self._network.lanes[way.from_lane].width

@@ -8,10 +8,13 @@ import numpy as np
 
 from tmpud.dynamics import VehicleLimits
 from tmpud.motion.right_of_way import RightOfWay
-from tmpud.motion.route import Route
-from tmpud.motion.speed import Obstacle, acceleration, leader
+from tmpud.motion.route import Gate, Route
+from tmpud.motion.speed import STANDING_GAP, Obstacle, acceleration, leader
 from tmpud.motion.tracking import Tracker
 from tmpud.scene import Control, FloatArray, Scene
+
+GATES_AHEAD = 40.0  # [m] stop lines further away are not thought of yet
+AT_LINE = 5.0  # [m] standing this near a line is waiting at it
 
 
 class Drive:
@@ -57,18 +60,24 @@ class Drive:
     def _stop(self, scene: Scene, station: float, ahead: list[Obstacle], dt: float) -> float | None:
         """Return how far the next line is that must not be crossed now [m]."""
         front = station + scene.ego.length / 2
-        gate = next((gate for gate in self.route.gates if gate.station > front - 0.2), None)
-        if gate is None or gate.station - front > 40.0:
+        gates = [gate for gate in self.route.gates if -0.2 < gate.station - front < GATES_AHEAD]
+        if not gates:
             self._standing = 0.0
-            return None
+        elif scene.ego.speed < 0.3 and gates[0].station - front < AT_LINE:
+            self._standing += dt
+        for gate in gates:
+            distance = gate.station - front
+            too_late = scene.ego.speed**2 > 2 * self._limits.max_braking * max(distance, 0.01)
+            if not too_late and not self._may_pass(scene, gate, front, ahead):
+                return distance
+        return None
+
+    def _may_pass(self, scene: Scene, gate: Gate, front: float, ahead: list[Obstacle]) -> bool:
+        """Whether the ego may cross a line now, and would not have to stop in the junction behind it."""
+        room = gate.exit - front + scene.ego.length + STANDING_GAP
+        jammed = any(gate.station - front < o.gap < room and o.speed < 1.0 for o in ahead)
         distance = gate.station - front
-        self._standing = self._standing + dt if scene.ego.speed < 0.3 and distance < 5.0 else self._standing
-        beyond = gate.exit - front
-        jammed = any(o.gap < beyond + scene.ego.length + 2.0 and o.speed < 1.0 and o.gap > distance for o in ahead)
-        if self._right_of_way.may_enter(scene, gate.connection, distance, self._standing) and not jammed:
-            return None
-        braking = scene.ego.speed**2 / (2 * max(distance, 0.01))
-        return distance if braking < self._limits.max_braking else None
+        return not jammed and self._right_of_way.may_enter(scene, gate.connection, distance, self._standing)
 
     def roll_out(self, scene: Scene, times: FloatArray, dt: float = 0.1) -> tuple[FloatArray, FloatArray]:
         """Return stations and speeds (T,) at some times if all others keep their speed."""

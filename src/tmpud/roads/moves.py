@@ -5,14 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
-from tmpud.roads.network import RoadNetwork
+from tmpud.roads.network import LaneConnection, RoadNetwork, Segment
 from tmpud.symbols import Action
 
+MERGES = (Action.MERGELEFT, Action.MERGERIGHT)
 MERGE_LENGTH = 20.0  # [m] least distance between the middles of a merge's two segments
 
 
 class Move(NamedTuple):
-    """An action and the segment to which it leads."""
+    """An action and the segment to which it leads, or from which it comes."""
 
     action: Action
     segment: str
@@ -21,16 +22,39 @@ class Move(NamedTuple):
 def moves(network: RoadNetwork, segment: str) -> Iterator[Move]:
     """Yield the moves from a segment: along its lane, to a neighbour's next segment, or through a junction."""
     ahead = network.ahead(segment)
-    here = network.segments[segment]
     if ahead is None:
-        for connection in network.outgoing(here.lane):
+        for connection in _ways(network.outgoing(network.segments[segment].lane)):
             yield Move(connection.action, network.segments_of(connection.to_lane)[0].id)
-        return
-    yield Move(Action.FORWARD, ahead.id)
-    for action in (Action.MERGELEFT, Action.MERGERIGHT):
-        beside = network.beside(ahead.id, action)
-        if beside and network.may_change(here.lane, action) and beside.middle - here.middle >= MERGE_LENGTH:
-            yield Move(action, beside.id)
+    else:
+        yield Move(Action.FORWARD, ahead.id)
+    for action in MERGES:
+        target = network.merge_target(segment, action)
+        if target and _has_room(network, network.segments[segment], target):
+            yield Move(action, target.id)
+
+
+def moves_into(network: RoadNetwork, segment: str) -> Iterator[Move]:
+    """Yield the moves that lead to a segment, each with the segment it comes from."""
+    behind = network.behind(segment)
+    if behind is None:
+        for connection in _ways(network.incoming(network.segments[segment].lane)):
+            yield Move(connection.action, network.segments_of(connection.from_lane)[-1].id)
+    else:
+        yield Move(Action.FORWARD, behind.id)
+    for action in MERGES:
+        origin = network.merge_origin(segment, action)
+        if origin and _has_room(network, origin, network.segments[segment]):
+            yield Move(action, origin.id)
+
+
+def _ways(connections: Iterable[LaneConnection]) -> Iterator[LaneConnection]:
+    return (connection for connection in connections if not connection.turnaround)
+
+
+def _has_room(network: RoadNetwork, origin: Segment, target: Segment) -> bool:
+    """Whether a merge has MERGE_LENGTH: to the target's middle, or from the lane's middle to its end if uncut."""
+    way = target.end - origin.middle if network.uncut else target.middle - origin.middle
+    return way >= MERGE_LENGTH
 
 
 def reachable(network: RoadNetwork, starts: Iterable[str]) -> set[str]:

@@ -13,6 +13,8 @@ from tmpud.symbols import Action
 
 SEGMENT_LENGTH = 60.0  # [m]
 
+_OPPOSITE = {Action.MERGELEFT: Action.MERGERIGHT, Action.MERGERIGHT: Action.MERGELEFT}
+
 
 @dataclass(frozen=True, slots=True)
 class Lane:
@@ -189,7 +191,18 @@ class RoadNetwork:
         there = self.beside(segment, action)
         if there is None or not self.may_change(self.segments[segment].lane, action):
             return None
-        return there if math.isinf(self.segment_length) else self.ahead(there.id)
+        return there if self.uncut else self.ahead(there.id)
+
+    def merge_origin(self, segment: str, action: Action) -> Segment | None:
+        """Return from where a merge leads to a segment, None where no merge does."""
+        before = self.segments[segment] if self.uncut else self.behind(segment)
+        here = before and self.beside(before.id, _OPPOSITE[action])
+        return here if here and self.merge_target(here.id, action) else None
+
+    @property
+    def uncut(self) -> bool:
+        """Whether each lane is one segment."""
+        return math.isinf(self.segment_length)
 
     def outgoing(self, lane: str) -> list[LaneConnection]:
         """Return the connections that start at a lane's end."""

@@ -201,11 +201,11 @@ def _warnings(
     stated = [(lane.number("length", low=0.0), lanes.get(lane.text("id"))) for row in rows.values() for lane in row]
     odd = sum(lane is not None and abs(length - lane.length) > 1.0 + 0.05 * lane.length for length, lane in stated)
     counts = [
-        (total - len(lanes), "lanes are closed to cars and left out"),
-        (links.closed, "connections are closed to cars and left out"),
-        (links.turnarounds, "turnarounds are left out"),
-        (len(lanes.keys() - left), "lanes have no exit"),
-        (len(lanes.keys() - reached), "lanes have no entry"),
-        (odd, "lanes state a length that is not their shape's; the shape's counts"),
+        (total - len(lanes), "lanes closed to cars, left out"),
+        (links.closed, "connections closed to cars, left out"),
+        (links.turnarounds, "turnarounds, left out"),
+        (len(lanes.keys() - left), "lanes without an exit"),
+        (len(lanes.keys() - reached), "lanes without an entry"),
+        (odd, "lanes whose stated length is not their shape's, which counts"),
     ]
-    return [f"{count} {what}" for count, what in counts if count]
+    return [f"{what}: {count}" for count, what in counts if count]

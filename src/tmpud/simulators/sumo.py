@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 from tmpud.dynamics import EGO, VehicleLimits, step
 from tmpud.errors import SimulatorError
-from tmpud.geometry import Pose, wrap_angle
+from tmpud.geometry import Polyline, Pose, wrap_angle
 from tmpud.roads.network import RoadNetwork
 from tmpud.scene import Control, Scene, Vehicles, VehicleState
 from tmpud.simulators.traffic import AHEAD, SPREAD, WISHED_SPEED, Circulation
@@ -31,6 +31,7 @@ DT = 0.05  # [s]
 SENSING_RANGE = 80.0  # [m] others further away are not in the scene
 EXTEND_EVERY = 100  # steps between looks at the cars' routes
 YAW_WINDOW = 11  # steps over which a yaw rate is measured
+CYCLE = 90.0  # [s] about one cycle of the lights
 PATIENCE = 60.0  # [s] simulated
 ROOM_BEHIND, ROOM_AHEAD = 15.0, 25.0  # [m] around the place where the ego appears
 GENTLE = 2.0  # [m/s^2] braking
@@ -45,7 +46,10 @@ class SumoSimulator:
     """One town with circulating traffic. libsumo holds one simulation per process."""
 
     def __init__(self, network: RoadNetwork, *, traffic: int, seed: int, warm_up: float = 60.0) -> None:
-        """Load the map and let ``traffic`` vehicles circulate for ``warm_up`` simulated seconds."""
+        """Load the map and let ``traffic`` vehicles circulate for ``warm_up`` simulated seconds, and up to CYCLE more.
+
+        How much more is drawn by the seed, so that the ego meets the lights in any phase.
+        """
         self._network = network
         self._limits: VehicleLimits = EGO
         self._rng = random.Random(f"traffic/{seed}")  # noqa: S311
@@ -53,6 +57,9 @@ class SumoSimulator:
         self._headings: dict[str, deque[tuple[int, float]]] = {}
         self._ego: VehicleState | None = None
         self._steps = 0
+        self._wanted: list[str] = []  # the announced roads, as long as SUMO does not take them
+        self._way: list[tuple[str, Polyline]] = []  # the announced lanes
+        self._lines: dict[str, Polyline | None] = {}
         self._sumo = sumo = _start(network, seed)
         self._fields = (
             sumo.VAR_POSITION3D, sumo.VAR_ANGLE, sumo.VAR_SPEED, sumo.VAR_ACCELERATION,
@@ -68,7 +75,7 @@ class SumoSimulator:
             )
         )  # fmt: skip
         self._fill(traffic)
-        for _ in range(round(warm_up / DT)):
+        for _ in range(round((warm_up + self._rng.uniform(0.0, CYCLE)) / DT)):
             self._advance()
 
     # The Simulator protocol ------------------------------------------------------------------------------------
@@ -79,12 +86,13 @@ class SumoSimulator:
         self._clear(lane, station)
         edge = self._network.lanes[lane].edge
         index = self._network.lanes[lane].index
-        self._sumo.route.add("ego", [edge, *self._circulation.walk(edge, 2)])
+        self._sumo.route.add("ego", [edge])
         self._sumo.vehicle.add(EGO_ID, "ego", typeID="ego", departLane=str(index), departPos=f"{station:.2f}")
         self._sumo.vehicle.setSpeedMode(EGO_ID, 0)
         self._sumo.vehicle.setLaneChangeMode(EGO_ID, 0)
         room = self._network.lanes[lane].length - station - self._limits.length
         speed = min(WISHED_SPEED, math.sqrt(2 * GENTLE * max(room, 0.0)))
+        self._way = [(lane, self._network.lanes[lane].centre)]
         self._ego = VehicleState(EGO_ID, pose, lane, speed=speed, length=self._limits.length, width=self._limits.width)
         self._place(self._ego)
         self._advance()
@@ -102,14 +110,12 @@ class SumoSimulator:
         self._advance()
         return self._scene()
 
-    def announce(self, roads: Sequence[str]) -> None:
-        """Tell the others by which roads the ego means to go on, so that they give way to it at junctions."""
-        route = [road for road, before in zip(roads, [None, *roads], strict=False) if road != before]
-        try:
-            self._sumo.vehicle.setRoute(EGO_ID, route)
-        except self._sumo.TraCIException:  # too near the road's end to stop, SUMO wants the route from the next road on
-            if len(route) > 1:
-                self._sumo.vehicle.setRoute(EGO_ID, route[1:])
+    def announce(self, lanes: Sequence[str]) -> None:
+        """Tell the others by which lanes the ego means to go on, so that they give way to it at junctions."""
+        self._way = [(lane, line) for lane in dict.fromkeys(lanes) if (line := self._line(lane))]
+        roads = [self._network.lanes[lane].edge for lane in lanes if lane in self._network.lanes]
+        self._wanted = [road for road, before in zip(roads, [None, *roads], strict=False) if road != before]
+        self._take_route()
 
     def everyone(self) -> Vehicles:
         """Return all other vehicles of the town, for pictures and records."""
@@ -134,12 +140,38 @@ class SumoSimulator:
 
     # Inside ----------------------------------------------------------------------------------------------------
 
+    def _line(self, lane: str) -> Polyline | None:
+        """Return a lane's centre line, None for one within a junction that has no length."""
+        if lane not in self._lines:
+            points = [point[:2] for point in self._sumo.lane.getShape(lane)]
+            self._lines[lane] = Polyline(points) if len(set(points)) > 1 else None
+        return self._lines[lane]
+
+    def _take_route(self) -> None:
+        """Give SUMO the announced route, or try again later.
+
+        Too near a road's end to stop, SUMO wants the route from the next road on; within a junction it takes none that
+        leaves the junction by another way.
+        """
+        for route in (self._wanted, self._wanted[1:]):
+            with contextlib.suppress(self._sumo.TraCIException):
+                self._sumo.vehicle.setRoute(EGO_ID, route)
+                self._wanted = []
+                return
+
     def _place(self, ego: VehicleState) -> None:
-        """Command SUMO to have the ego's front bumper where its pose says after the next step."""
+        """Command SUMO to have the ego's front bumper where its pose says after the next step.
+
+        SUMO is told the lane, which it would guess wrong where ways through a junction run side by side.
+        """
+        if self._wanted:
+            self._take_route()
         x, y, heading = ego.pose
-        front_x, front_y = x + ego.length / 2 * math.cos(heading), y + ego.length / 2 * math.sin(heading)
+        x, y = x + ego.length / 2 * math.cos(heading), y + ego.length / 2 * math.sin(heading)
+        lane = min(self._way, key=lambda way: abs(way[1].project(x, y)[1]))[0]
+        edge, _, index = lane.rpartition("_")
         angle = 90.0 - math.degrees(heading)
-        self._sumo.vehicle.moveToXY(EGO_ID, "", -1, front_x, front_y, angle, keepRoute=1)
+        self._sumo.vehicle.moveToXY(EGO_ID, edge, int(index), x, y, angle, keepRoute=2)
         self._sumo.vehicle.setSpeed(EGO_ID, ego.speed)
 
     def _advance(self) -> None:

@@ -18,20 +18,24 @@ class Circulation:
 
     def __init__(self, network: RoadNetwork, rng: random.Random) -> None:
         self._network, self._rng = network, rng
-        self._next = _circular_roads(network)
-        if not self._next:
-            raise SimulatorError(f"{network.name}: no road on which traffic could circulate")
+        self._following = _following_roads(network)
+        self._next = _circular_roads(self._following)
 
     def walk(self, road: str, length: int = AHEAD) -> list[str]:
-        """Return a random walk that goes on after a road, the road itself left out."""
+        """Return a random walk that goes on after a road, the road itself left out.
+
+        It is as long as asked for on roads that circulate; one that begins elsewhere may come to a dead end.
+        """
         found: list[str] = []
-        while len(found) < length:
-            road = self._rng.choice(self._next[road])
+        while len(found) < length and (ways := self._next.get(road) or self._following[road]):
+            road = self._rng.choice(ways)
             found.append(road)
         return found
 
     def places(self, count: int) -> list[tuple[str, float]]:
-        """Return ``count`` (lane, station) drawn among all that are SPACING apart."""
+        """Return ``count`` (lane, station) drawn among all that are SPACING apart; SimulatorError for too many."""
+        if count and not self._next:
+            raise SimulatorError(f"{self._network.name}: no road on which traffic could circulate")
         free = [
             (lane, SPACING * (i + 0.7))
             for road in self._next
@@ -46,11 +50,17 @@ class Circulation:
         return road in self._next
 
 
-def _circular_roads(network: RoadNetwork) -> dict[str, list[str]]:
-    """Return road -> following roads, without those that lead to a dead end."""
+def _following_roads(network: RoadNetwork) -> dict[str, list[str]]:
+    """Return road -> following roads."""
     following: dict[str, set[str]] = {road: set() for road in network.edges}
     for connection in network.connections:
         following[network.lanes[connection.from_lane].edge].add(network.lanes[connection.to_lane].edge)
+    return {road: sorted(after) for road, after in following.items()}
+
+
+def _circular_roads(roads: dict[str, list[str]]) -> dict[str, list[str]]:
+    """Return road -> following roads, without those that lead to a dead end."""
+    following = {road: set(after) for road, after in roads.items()}
     while ends := {road for road, after in following.items() if not after}:
         following = {road: after - ends for road, after in following.items() if road not in ends}
     return {road: sorted(following[road]) for road in sorted(following)}

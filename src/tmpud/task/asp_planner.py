@@ -133,7 +133,7 @@ class AspPlanner:
 def _shifted(given: Corridor) -> dict[Transition, int]:
     """Return each weight with the distances from the start taken out [cm]: every plan's total shrinks by the same.
 
-    The best plans then total 0, from where the solver starts to look.
+    The same, because all goals in a corridor are equally far. The best plans then total 0, where the solver starts.
     """
     distance = {state: split(rank)[0] for state, rank in given.distance.items()}
     return {

@@ -5,11 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from tmpud.errors import RequestError
-from tmpud.roads.network import RoadNetwork, Segment
+from tmpud.roads.moves import moves, moves_into
+from tmpud.roads.network import RoadNetwork
 from tmpud.symbols import Action, Place, ServiceRequest, State, Transition
-
-MERGES = (Action.MERGELEFT, Action.MERGERIGHT)
-OPPOSITE = {Action.MERGELEFT: Action.MERGERIGHT, Action.MERGERIGHT: Action.MERGELEFT}
 
 
 class Domain:
@@ -55,7 +53,7 @@ class Domain:
         segment, leg = state
         for before in range(min(leg + 1, self.last)):
             if self.leg_after(segment, before) == leg:
-                for origin, action in self._ways_into(segment):
+                for action, origin in moves_into(self.network, segment):
                     yield Transition(State(origin, before), action, state)
                 if self._at_position(segment, before):
                     yield Transition(State(segment, before), Action.FORWARD, state)
@@ -82,36 +80,8 @@ class Domain:
             return
         if self._at_position(segment, leg):
             yield Transition(state, Action.FORWARD, State(segment, self.leg_after(segment, leg)))
-        for action, target in self._ways_out_of(segment):
+        for action, target in moves(self.network, segment):
             yield Transition(state, action, State(target, self.leg_after(target, leg)))
-
-    def _ways_out_of(self, segment: str) -> Iterator[tuple[Action, str]]:
-        network, lane = self.network, self.network.segments[segment].lane
-        following = network.ahead(segment)
-        if following is None:
-            for connection in network.outgoing(lane):
-                if not connection.turnaround:
-                    yield connection.action, network.segments_of(connection.to_lane)[0].id
-            return
-        yield Action.FORWARD, following.id
-        for action in MERGES:
-            beside = network.beside(following.id, action)
-            if beside is not None and network.may_change(lane, action):
-                yield action, beside.id
-
-    def _ways_into(self, segment: str) -> Iterator[tuple[str, Action]]:
-        network, lane = self.network, self.network.segments[segment].lane
-        preceding = network.behind(segment)
-        if preceding is None:
-            for connection in network.incoming(lane):
-                if not connection.turnaround:
-                    yield network.segments_of(connection.from_lane)[-1].id, connection.action
-            return
-        yield preceding.id, Action.FORWARD
-        for action in MERGES:
-            beside: Segment | None = network.beside(preceding.id, OPPOSITE[action])
-            if beside is not None and network.may_change(beside.lane, action):
-                yield beside.id, action
 
 
 def _check(place: Place, network: RoadNetwork) -> None:

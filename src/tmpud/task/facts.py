@@ -40,11 +40,12 @@ def _road(domain: Domain, transition: Transition) -> Iterator[str]:
     """Yield the facts about the roads that allow a transition."""
     network, action = domain.network, transition.action
     origin, target = transition.state.segment, transition.next_state.segment
-    beside = network.behind(target)
-    if action.is_merge and beside is not None:
-        left, right = (beside.id, origin) if action is Action.MERGELEFT else (origin, beside.id)
+    if action.is_merge:
+        before = network.behind(target)
+        beside = before.id if before and not network.uncut else target
+        left, right = (beside, origin) if action is Action.MERGELEFT else (origin, beside)
         yield f"leftof({quote(left)},{quote(right)})."
-        yield f"ahead({quote(target)},{quote(beside.id)})."
+        yield f"uncut({quote(origin)})." if network.uncut else f"ahead({quote(target)},{quote(beside)})."
         return
     following = network.ahead(origin)
     if following is not None and following.id == target:

@@ -14,6 +14,7 @@ from tmpud.task.facts import encoding
 
 # All optimal plans at once: the union of their atoms ("brave consequences").
 OPTIONS = ("--warn=none", "--opt-mode=optN", "--enum-mode=brave")
+CENTIMETRES = 3  # the priority of quality.lp
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,24 +36,33 @@ def ask(instance: str, transitions: Iterable[Transition], options: Sequence[str]
     control.add("base", [], instance)
     control.ground([("base", [])])
     grounded = perf_counter()
-    model = _last_model(control)
-    if model is None:
+    found = _last_model(control)
+    if found is None:
         return None
-    atoms, centimetres, optimal = model
     named = {(t.state.segment, t.state.leg, t.action.value, t.next_state.segment): t for t in transitions}
-    union = tuple(named[_key(atom)] for atom in atoms)
-    return Answer(union, centimetres, optimal, grounded - began, perf_counter() - grounded)
+    union = tuple(named[_key(atom)] for atom in found.atoms)
+    return Answer(union, found.centimetres, found.proved, grounded - began, perf_counter() - grounded)
 
 
-def _last_model(control: clingo.Control) -> tuple[Sequence[clingo.Symbol], int, bool] | None:
-    """Return the last model, which holds the union once optimality is proved, with its cost."""
-    found = None
-    with control.solve(yield_=True) as handle:
-        for model in handle:
-            found = model.symbols(shown=True), model.cost[0], model.optimality_proven
-        if found is None and handle.get().unknown:
-            raise NoPlanError("the solver gave up at its limit of conflicts, before it found a plan")
-    return found
+@dataclass(slots=True)
+class _LastModel:
+    """Keeps the last model, which is the union once optimality is proved; to iterate instead would start a thread."""
+
+    atoms: Sequence[clingo.Symbol] = ()
+    centimetres: int = 0
+    proved: bool = False
+
+    def __call__(self, model: clingo.Model) -> None:
+        self.atoms, self.proved = model.symbols(shown=True), model.optimality_proven
+        self.centimetres = dict(zip(model.priority, model.cost, strict=True)).get(CENTIMETRES, 0)
+
+
+def _last_model(control: clingo.Control) -> _LastModel | None:
+    found = _LastModel()
+    result = control.solve(on_model=found)
+    if result.unknown:
+        raise NoPlanError("the solver gave up at its limit of conflicts, before it found a plan")
+    return found if result.satisfiable else None
 
 
 def _key(atom: clingo.Symbol) -> tuple[str, int, str, str]:

@@ -1,0 +1,58 @@
+import random
+
+import pytest
+
+from tests.task.agreement import Case, random_case
+from tests.task.tiny_roads import driven, grid, request
+from tmpud.presets import TMPUD
+from tmpud.symbols import OptimisticSafe, State
+from tmpud.task.corridor import Search, backward_tree, corridor, whole_map
+from tmpud.task.domain import Domain
+from tmpud.task.facts import facts
+from tmpud.task.solver import ask
+from tmpud.task.utility import FORBIDDEN, Utility, split
+
+
+def search_of(case: Case, state: State) -> tuple[Domain, Search]:
+    """Return a search whose bounds were made before the weights changed."""
+    domain = Domain(case.network, case.request)
+    tree = backward_tree(domain, case.preset, case.cost)
+    case.change(state)
+    utility = Utility(case.preset, case.cost, case.safe, tree.floor)
+    return domain, Search(domain.successors, utility.rank, tree.distance, domain.last)
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_the_corridor_holds_every_optimal_plan_of_the_whole_map(seed: int) -> None:
+    case = random_case(random.Random(seed))
+    state = State(case.request.start.segments[0], 0)
+    domain, search = search_of(case, state)
+    found, everything = corridor(search, state), whole_map(search, state)
+    answer = ask(facts(domain, state, {t: split(rank)[0] for t, rank in everything.ranks.items()}), everything.ranks)
+    assert (found is None) == (answer is None)
+    if found is not None and answer is not None:
+        assert found.optimal_transitions() == set(answer.union)
+        assert set(answer.union) <= set(found.ranks) <= set(everything.ranks)
+        assert split(found.optimum)[0] == answer.centimetres
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_the_kept_bounds_are_consistent_after_the_weights_changed(seed: int) -> None:
+    case = random_case(random.Random(seed))
+    domain, search = search_of(case, State(case.request.start.segments[0], 0))
+    for segment in case.network.segments:
+        for transition in domain.successors(State(segment, 0)):
+            here = search.bound.get(transition.state, FORBIDDEN)
+            there = search.bound.get(transition.next_state, FORBIDDEN)
+            assert here <= search.rank(transition) + there
+
+
+def test_the_corridor_of_a_town_is_a_small_part_of_it() -> None:
+    roads = grid(6, random.Random(1))
+    domain = Domain(roads, request("0.0-E_0/0", "5.5-W_1/1"))
+    tree = backward_tree(domain, TMPUD, driven(roads))
+    utility = Utility(TMPUD, driven(roads), OptimisticSafe(), tree.floor)
+    search = Search(domain.successors, utility.rank, tree.distance, domain.last)
+    found = corridor(search, domain.start_state())
+    assert found is not None
+    assert 20 * len(found.ranks) < len(whole_map(search, domain.start_state()).ranks)
