@@ -39,9 +39,7 @@ $(VENV)/.developing: $(BIN)/python pyproject.toml constraints.txt
 	touch $@ $(VENV)/.installed
 
 picture: $(VENV)/.installed
-	$(BIN)/tmpud drive --from park1e_0 --to high4n --traffic 200 --seed 17 --out runs/picture
-	mkdir -p docs/images
-	cp runs/picture/map.png docs/images/demo.png
+	$(BIN)/python -m tools.picture
 
 clean:
 	rm -rf $(VENV) runs .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis
