@@ -123,7 +123,7 @@ def test_an_action_is_driven_to_its_goal_pose() -> None:
     assert outcome is Outcome.DONE
     assert here.scene.ego.pose.x == pytest.approx(75.0, abs=0.5)
     assert here.distance == pytest.approx(50.0, abs=0.5)
-    assert simulator(here).announced == [["in", "in"]]
+    assert simulator(here).announced == [["in_0"]]
 
 
 def test_a_merge_ends_on_the_other_lane() -> None:

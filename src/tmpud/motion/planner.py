@@ -88,6 +88,7 @@ class LaneMotionPlanner(PathPlanner):
         """Return the command that follows the path of the transition being driven."""
         if self._drive is None:
             raise InfeasibleMotionError("control() before begin(): no transition is being driven")
+        self._right_of_way.observe(scene)
         return self._drive.control(scene, self._dt)
 
     def reached(self) -> bool:

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tmpud.geometry import Polyline
+from tmpud.motion.signals import SignalClock
 from tmpud.roads.network import LaneConnection, RoadNetwork
 from tmpud.scene import Scene, Vehicles
 
@@ -18,6 +19,7 @@ MARGIN = 1.5  # [s] between the ego leaving a shared place and another reaching 
 FOE_SPEED = 6.0  # [m/s] that others may reach
 FOE_HORIZON = 60.0  # [m] how far up the road others are looked for
 LATE_BRAKING = 3.0  # [m/s^2] where more is needed to stop for yellow, the ego goes on
+IMPATIENCE = 120.0  # [s] after which the ego enters on any green
 PATIENCE = 4.0  # [s] after which standing vehicles are taken to be waiting for the ego
 
 
@@ -35,6 +37,7 @@ class RightOfWay:
 
     def __init__(self, network: RoadNetwork) -> None:
         self._network = network
+        self._clock = SignalClock(network)
         self._shared: dict[tuple[int, int], Shared | None] = {}
         self._junctions: dict[str, list[int]] = defaultdict(list)
 
@@ -47,6 +50,8 @@ class RightOfWay:
         letter = self._letter(scene, connection)
         if letter in "rRu" or (letter in "yY" and _can_stop(scene.ego.speed, distance)):
             return False
+        if standing < IMPATIENCE and not self._clears_in_time(scene, connection, distance):
+            return False
         if ((connection.signal is None and connection.priority in "sw") or letter == "s") and standing <= 0.0:
             return False
         yields = () if letter == "G" else connection.yields_to
@@ -56,6 +61,17 @@ class RightOfWay:
             or (foe in yields and self._arriving(scene, index, foe, by_lane, distance, standing))
             for foe in connection.foes
         )
+
+    def _clears_in_time(self, scene: Scene, connection: LaneConnection, distance: float) -> bool:
+        """Whether the ego would be out of the junction before crossing traffic gets green, or is too near to stop."""
+        way = distance + connection.path.length + scene.ego.length
+        time = _time_to_cover(way, scene.ego.speed)
+        left = self._clock.until_crossing_green(connection, scene.time)
+        return time < left or not _can_stop(scene.ego.speed, distance)
+
+    def observe(self, scene: Scene) -> None:
+        """Watch the lights; to be called at every step."""
+        self._clock.observe(scene)
 
     def room_inside(self, scene: Scene, index: int, front: float) -> float:
         """Return how far the ego, within connection ``index``, may go on before a place that another takes first [m].
