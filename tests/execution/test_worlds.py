@@ -53,8 +53,8 @@ class FakeSimulator:
         self.scene = replace(self.scene, time=round(self.scene.time + DT, 3), ego=replace(ego, lane=lane))
         return self.change(self.scene)
 
-    def announce(self, roads: Sequence[str]) -> None:
-        self.announced.append(roads)
+    def announce(self, lanes: Sequence[str]) -> None:
+        self.announced.append(lanes)
 
     def everyone(self) -> Vehicles:
         return self.scene.others
@@ -123,7 +123,7 @@ def test_an_action_is_driven_to_its_goal_pose() -> None:
     assert outcome is Outcome.DONE
     assert here.scene.ego.pose.x == pytest.approx(75.0, abs=0.5)
     assert here.distance == pytest.approx(50.0, abs=0.5)
-    assert simulator(here).announced == [["in", "in"]]
+    assert simulator(here).announced == [["in_0"]]
 
 
 def test_a_merge_ends_on_the_other_lane() -> None:
