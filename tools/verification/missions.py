@@ -93,6 +93,7 @@ def _details(trials: dict[int, Trial], arrived: Sequence[int]) -> dict[str, Any]
         "collisions_by_class": dict(sorted(Counter(_collisions(ran)).items())),
         "forced_stops": sum(summary["forced_stops"] for summary in ran),
         "violations": {where: dict(sorted(kinds.items())) for where, kinds in broken.items()},
+        "rules_broken": {seed: trial.violations for seed, trial in trials.items() if trial.violations},
         "trials_with_forced_merge": sum(trial.forced_merges > 0 for trial in trials.values()),
         "replans": sum(summary["replans"] for summary in ran),
         "all_arrived": list(arrived),
@@ -133,6 +134,8 @@ def _words(details: dict[str, Any], n: int) -> str:
     for kind, ms in details["latency_ms"].items():
         if ms is not None:
             words.append(f"{kind} {ms['median']:g} ms median, {ms['max']:g} ms max")
+    if details["rules_broken"]:
+        words.append("rules broken: " + ", ".join(map(str, details["rules_broken"])))
     if details["not_successful"]:
         words.append("not successful: " + ", ".join(map(str, details["not_successful"])))
     return "; ".join(words)

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from tmpud.dynamics import VehicleLimits
-from tmpud.motion.right_of_way import RightOfWay
+from tmpud.motion.right_of_way import PATIENCE, RightOfWay
 from tmpud.motion.route import Gate, Route
 from tmpud.motion.speed import STANDING_GAP, Obstacle, acceleration, leader
 from tmpud.motion.tracking import Tracker
@@ -32,6 +32,7 @@ class Drive:
         self._tracker, self._limits = Tracker(route, limits), limits
         self._station: float | None = None
         self._standing = 0.0  # [s] before the next stop line
+        self._standing_inside = 0.0  # [s] within a junction
 
     @property
     def remaining(self) -> float:
@@ -65,6 +66,12 @@ class Drive:
             self._standing = 0.0
         elif scene.ego.speed < 0.3 and gates[0].station - front < AT_LINE:
             self._standing += dt
+        inside = next((gate for gate in self.route.gates if gate.station < front < gate.exit), None)
+        if inside is not None and self._standing_inside < PATIENCE:
+            room = self._right_of_way.room_inside(scene, inside.connection, front - inside.station)
+            self._standing_inside += dt if scene.ego.speed < 0.3 else 0.0
+            if scene.ego.speed**2 < 2 * self._limits.max_braking * room < math.inf:
+                return room
         for gate in gates:
             distance = gate.station - front
             too_late = scene.ego.speed**2 > 2 * self._limits.max_braking * max(distance, 0.01)

@@ -36,6 +36,7 @@ class RightOfWay:
     def __init__(self, network: RoadNetwork) -> None:
         self._network = network
         self._shared: dict[tuple[int, int], Shared | None] = {}
+        self._junctions: dict[str, list[int]] = defaultdict(list)
 
     def may_enter(self, scene: Scene, index: int, distance: float, standing: float) -> bool:
         """Return whether the ego, ``distance`` metres before the line, may go through connection ``index``.
@@ -51,37 +52,58 @@ class RightOfWay:
         yields = () if letter == "G" else connection.yields_to
         by_lane = _by_lane(scene.others)
         return not any(
-            self._inside(scene, index, foe, by_lane, foe in connection.yields_to)
+            self._inside(scene, index, foe, goes_first=foe in connection.yields_to)
             or (foe in yields and self._arriving(scene, index, foe, by_lane, distance, standing))
             for foe in connection.foes
         )
+
+    def room_inside(self, scene: Scene, index: int, front: float) -> float:
+        """Return how far the ego, within connection ``index``, may go on before a place that another takes first [m].
+
+        ``front`` is its bumper's station on the connection's path. Whoever is in a shared place, or on the move and at
+        it before the ego, goes first, whatever the signs say: not all others wait for those who are still crossing.
+        """
+        own = self._network.connections[index]
+        room = math.inf
+        for other in self._same_junction(own):
+            connection = self._network.connections[other]
+            if connection.from_lane == own.from_lane or (shared := self.shared(index, other)) is None:
+                continue
+            to_place = shared.enter - front
+            if to_place > 0.5:
+                own_arrival = _time_to_cover(to_place, scene.ego.speed)
+                if any(_is_first(*car, shared, own_arrival) for car in self._crossing(scene, connection)):
+                    room = min(room, to_place)
+        return room
+
+    def _same_junction(self, own: LaneConnection) -> list[int]:
+        if not self._junctions:
+            for index, connection in enumerate(self._network.connections):
+                self._junctions[connection.junction].append(index)
+        return self._junctions[own.junction]
+
+    def _crossing(self, scene: Scene, connection: LaneConnection) -> Iterator[tuple[float, float, float]]:
+        """Yield rear and front station on the connection's path [m] and speed [m/s] of those who drive through it."""
+        others = scene.others
+        for i, lane in enumerate(others.lanes):
+            if lane in connection.internal_lanes:
+                station = connection.path.project(float(others.x[i]), float(others.y[i]))[0]
+                half = float(others.length[i]) / 2
+                yield station - half, station + half, float(others.speed[i])
 
     def _letter(self, scene: Scene, connection: LaneConnection) -> str:
         """Return the state of the connection's light, "O" (off) where it has none."""
         return scene.signals[connection.signal][connection.link] if connection.signal else "O"
 
-    def _inside(
-        self,
-        scene: Scene,
-        index: int,
-        foe: int,
-        by_lane: dict[str, list[int]],
-        goes_first: bool,
-    ) -> bool:
+    def _inside(self, scene: Scene, index: int, foe: int, *, goes_first: bool) -> bool:
         """Whether a vehicle on a foe's path through the junction will be in the way."""
         shared = self.shared(index, foe)
         if shared is None:
             return False
-        path = self._network.connections[foe].path
-        for lane in self._network.connections[foe].internal_lanes:
-            for i in by_lane.get(lane, ()):
-                station = path.project(float(scene.others.x[i]), float(scene.others.y[i]))[0]
-                half = float(scene.others.length[i]) / 2
-                if station - half > shared.other_leave:
-                    continue
-                waits = float(scene.others.speed[i]) < 0.5 and station + half < shared.other_enter + 0.5
-                if goes_first or not waits:
-                    return True
+        for rear, front, speed in self._crossing(scene, self._network.connections[foe]):
+            waits = speed < 0.5 and front < shared.other_enter + 0.5
+            if rear <= shared.other_leave and (goes_first or not waits):
+                return True
         return False
 
     def _arriving(
@@ -129,6 +151,15 @@ class RightOfWay:
             connections = self._network.connections
             self._shared[index, foe] = _shared_place(connections[index].path, connections[foe].path)
         return self._shared[index, foe]
+
+
+def _is_first(rear: float, front: float, speed: float, shared: Shared, own_arrival: float) -> bool:
+    """Whether another on the move, or in the shared place already, has it before the ego."""
+    if rear > shared.other_leave:
+        return False
+    if front > shared.other_enter:
+        return True
+    return speed > 0.5 and (shared.other_enter - front) / speed < own_arrival
 
 
 def _by_lane(others: Vehicles) -> dict[str, list[int]]:
