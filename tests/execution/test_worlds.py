@@ -53,8 +53,8 @@ class FakeSimulator:
         self.scene = replace(self.scene, time=round(self.scene.time + DT, 3), ego=replace(ego, lane=lane))
         return self.change(self.scene)
 
-    def announce(self, roads: Sequence[str]) -> None:
-        self.announced.append(roads)
+    def announce(self, lanes: Sequence[str]) -> None:
+        self.announced.append(lanes)
 
     def everyone(self) -> Vehicles:
         return self.scene.others
