@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
@@ -27,13 +27,13 @@ app.add_typer(map_app, name="map")
 app.add_typer(asp_app, name="asp")
 
 TOWN = "millbrook"
-DEMO_SEED = 7
+DEMO_SEED, DEMO_TRAFFIC = 22, 200
 
 Map = Annotated[str, typer.Option("--map", "-m", help="A shipped town's name or a .net.xml(.gz) file.")]
 From = Annotated[str, typer.Option("--from", help="Start: a lane or edge id, x,y in map coordinates, or random.")]
 To = Annotated[str, typer.Option("--to", help="Goal, like --from.")]
 Via = Annotated[list[str] | None, typer.Option("--via", help="A place on the way; repeat for more, in their order.")]
-Seed = Annotated[int, typer.Option(help="Seed of random places, traffic and sampling.")]
+Seed = Annotated[int, typer.Option(min=0, help="Seed of random places, traffic and sampling.")]
 PresetName = Annotated[
     str, typer.Option("--preset", help="How the method's open points are settled: tmpud, paper or released.")
 ]
@@ -51,7 +51,7 @@ def demo(seed: Seed = DEMO_SEED, out: Out = None) -> None:
     from tmpud.runner import Mission
 
     paper = PAPER_MISSIONS[TOWN]
-    mission = Mission(map=TOWN, start=paper.start, goal=paper.goal, seed=seed)
+    mission = Mission(map=TOWN, start=paper.start, goal=paper.goal, seed=seed, traffic=DEMO_TRAFFIC)
     _drive(mission, out or Path("runs/demo"), as_json=False)
 
 
@@ -95,7 +95,7 @@ def _drive(mission: Mission, folder: Path, *, as_json: bool, frames: bool = True
     from tmpud.recording import record, record_timing
     from tmpud.roads.loading import load_map
     from tmpud.runner import drive as run
-    from tmpud.story import Story, closing, summarise
+    from tmpud.story import Story, summarise
     from tmpud.viewer.picture import draw_run
 
     watch, story = Stopwatch(), Story()
@@ -108,6 +108,14 @@ def _drive(mission: Mission, folder: Path, *, as_json: bool, frames: bool = True
     record_timing(watch, folder)
     draw_run(load_map(mission.map, preset_named(mission.preset).segment_length), events, folder / "map.png")
     summary = summarise(events) | {"latency_ms": watch.summary()}
+    _report(summary, folder, as_json=as_json)
+    if summary["status"] != "SUCCESS":
+        raise typer.Exit(1)
+
+
+def _report(summary: dict[str, Any], folder: Path, *, as_json: bool) -> None:
+    from tmpud.story import closing
+
     if as_json:
         typer.echo(json.dumps(summary))
         return
@@ -162,6 +170,8 @@ def map_info(map_: Annotated[str, typer.Argument(metavar="MAP")] = TOWN, as_json
         shown = ", ".join(f"{key} {count}" for key, count in value.items()) if isinstance(value, dict) else value
         if isinstance(value, tuple | list):
             shown = "; ".join(map(str, value)) or "none"
+        if isinstance(value, float):
+            shown = f"{value:.3g}"
         typer.echo(f"{name.replace('_', ' '):<20}{shown}")
 
 
@@ -189,9 +199,31 @@ def main() -> None:
     if debug:
         sys.argv.remove("--debug")
     try:
-        app()
-    except TmpudError as error:
-        if debug:
+        sys.exit(app(standalone_mode=False) or 0)
+    except KeyboardInterrupt:
+        _fail("interrupted; what was recorded is kept", 130)
+    except Exception as error:
+        if debug or not (code := _exit_code(error)):
             raise
-        typer.echo(f"tmpud: {error}", err=True)
-        sys.exit(error.exit_code)
+        if type(error).__name__ == "NoArgsIsHelpError":
+            error.show()  # type: ignore[attr-defined]
+            sys.exit(code)
+        _fail(error.format_message() if hasattr(error, "format_message") else str(error), code)
+
+
+def _exit_code(error: Exception) -> int:
+    """Return the exit code for an error of the user's, 0 for any other."""
+    if isinstance(error, TmpudError):
+        return error.exit_code
+    if type(error).__name__ == "Abort":
+        return 130
+    return 2 if isinstance(error, OSError) or hasattr(error, "format_message") else 0
+
+
+def _fail(message: str, code: int) -> NoReturn:
+    typer.echo(f"tmpud: {message or 'interrupted; what was recorded is kept'}", err=True)
+    sys.exit(code)
+
+
+if __name__ == "__main__":
+    main()

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tmpud.errors import InfeasibleMotionError, InvalidStateError
+from tmpud.errors import InfeasibleMotionError, InvalidStateError, SimulatorError
 from tmpud.events import Event, Frame, Judged
 from tmpud.execution.guard import Guard
 from tmpud.motion.mapping import StateMapping
@@ -59,10 +59,11 @@ class SimulatedWorld:
         self.distance = 0.0  # [m]
 
     def enter(self, lane: str, station: float) -> None:
-        """Put the ego on the road; the drive begins."""
+        """Put the ego on the road; the drive begins. Raises SimulatorError where it appears within another car."""
         self.scene: Scene = self._simulator.reset(lane, station)
         self.began = self.scene.time
-        self._judge.observe(self.scene)
+        if any(verdict.kind == "collision" for verdict in self._judge.observe(self.scene)):
+            raise SimulatorError(f"there is no room for the ego on {lane} at {station:.1f} m")
 
     @property
     def time(self) -> float:

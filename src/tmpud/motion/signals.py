@@ -20,6 +20,8 @@ class SignalClock:
     def observe(self, scene: Scene) -> None:
         """Take note of the lights that switched; to be called at every step."""
         for light, letters in scene.signals.items():
+            if light not in self._network.signals:
+                continue  # nothing is known of its program
             if light not in self._switched:
                 self._switched[light] = letters, self._began(light, letters, scene.time)
             elif self._switched[light][0] != letters:

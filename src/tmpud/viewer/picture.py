@@ -43,7 +43,8 @@ def draw_run(network: RoadNetwork, events: Iterable[Event], file: Path) -> None:
     _draw_ends(axes, mapping, plans)
     _draw_scale(axes)
     axes.set_title(_title(header, log), loc="left", fontsize=11)
-    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False, fontsize=9)
+    if axes.get_legend_handles_labels()[0]:
+        axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False, fontsize=9)
     figure.savefig(file, dpi=130)
 
 
