@@ -219,10 +219,11 @@ class SumoSimulator:
 
     def _clear(self, pose: Pose) -> None:
         """Wait until the ego's place is free, at most PATIENCE seconds, then take away who stands there."""
-        for _ in range(round(PATIENCE / DT)):
+        for _ in range(round(PATIENCE)):
             if not self._standing_at(pose):
                 return
-            self._advance()
+            for _ in range(round(1 / DT)):
+                self._advance()
         for vehicle in self._standing_at(pose):
             self._sumo.vehicle.remove(vehicle)
 
