@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -65,16 +65,20 @@ class Vehicles:
     @classmethod
     def of(cls, states: list[VehicleState]) -> Vehicles:
         """Gather single vehicles into arrays."""
-        columns = zip(*(_row(state) for state in states), strict=True) if states else [()] * len(_ARRAYS)
-        arrays = {name: np.array(column, dtype=np.float64) for name, column in zip(_ARRAYS, columns, strict=True)}
-        return cls(ids=tuple(s.id for s in states), lanes=tuple(s.lane for s in states), **arrays)
+        rows = [
+            (s.pose.x, s.pose.y, s.z, s.pose.heading, s.speed, s.yaw_rate, s.acceleration, s.length, s.width)
+            for s in states
+        ]
+        return cls.of_rows(tuple(s.id for s in states), tuple(s.lane for s in states), rows)
+
+    @classmethod
+    def of_rows(cls, ids: tuple[str, ...], lanes: tuple[str, ...], rows: Sequence[tuple[float, ...]]) -> Vehicles:
+        """Gather rows of x, y, z, heading, speed, yaw rate, acceleration, length and width into arrays."""
+        columns = np.array(rows, dtype=np.float64).reshape(len(ids), len(_ARRAYS)).T.copy()
+        return cls(ids, lanes, *columns)
 
 
 _ARRAYS = ("x", "y", "z", "heading", "speed", "yaw_rate", "acceleration", "length", "width")
-
-
-def _row(s: VehicleState) -> tuple[float, ...]:
-    return s.pose.x, s.pose.y, s.z, s.pose.heading, s.speed, s.yaw_rate, s.acceleration, s.length, s.width
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -11,7 +11,8 @@ from tmpud.errors import InvalidStateError, SimulatorError
 from tmpud.roads import load_map
 from tmpud.roads.network import RoadNetwork
 from tmpud.scene import Control, Scene
-from tmpud.simulators.sumo import DT, SumoSimulator
+from tmpud.simulators.sumo import SumoSimulator
+from tmpud.simulators.sumo_reader import DT
 
 Start = Callable[..., SumoSimulator]
 COAST = Control(0.0, 0.0)

@@ -9,7 +9,6 @@ import contextlib
 import math
 import random
 import sys
-from collections import deque
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -18,19 +17,17 @@ from typing import TYPE_CHECKING, Any
 
 from tmpud.dynamics import EGO, VehicleLimits, step
 from tmpud.errors import SimulatorError
-from tmpud.geometry import Polyline, Pose, wrap_angle
+from tmpud.geometry import Polyline, Pose
 from tmpud.roads.network import RoadNetwork
 from tmpud.scene import Control, Scene, Vehicles, VehicleState
+from tmpud.simulators.sumo_reader import DT, EGO_ID, SumoReader
 from tmpud.simulators.traffic import AHEAD, SPREAD, WISHED_SPEED, Circulation
 
 if TYPE_CHECKING:
     from types import ModuleType
 
-EGO_ID = "ego"
-DT = 0.05  # [s]
 SENSING_RANGE = 80.0  # [m] others further away are not in the scene
 EXTEND_EVERY = 100  # steps between looks at the cars' routes
-YAW_WINDOW = 11  # steps over which a yaw rate is measured
 CYCLE = 90.0  # [s] about one cycle of the lights
 PATIENCE = 60.0  # [s] simulated
 ROOM_BEHIND, ROOM_AHEAD, ROOM_BESIDE = 15.0, 25.0, 2.5  # [m] around the place where the ego appears
@@ -55,26 +52,13 @@ class SumoSimulator:
         self._limits: VehicleLimits = EGO
         self._rng = random.Random(f"traffic/{seed}")  # noqa: S311
         self._circulation = Circulation(network, self._rng)
-        self._headings: dict[str, deque[tuple[int, float]]] = {}
         self._ego: VehicleState | None = None
         self._steps = 0
         self._roads: list[str] = []  # the announced roads
         self._way: list[tuple[str, Polyline]] = []  # the announced lanes
         self._lines: dict[str, Polyline | None] = {}
         self._sumo = sumo = _start(network, seed)
-        self._fields = (
-            sumo.VAR_POSITION3D, sumo.VAR_ANGLE, sumo.VAR_SPEED, sumo.VAR_ACCELERATION,
-            sumo.VAR_LANE_ID, sumo.VAR_LENGTH, sumo.VAR_WIDTH,
-        )  # fmt: skip
-        vehicle = sumo.vehicle
-        self._getters = dict(
-            zip(
-                self._fields,
-                (vehicle.getPosition3D, vehicle.getAngle, vehicle.getSpeed, vehicle.getAcceleration,
-                 vehicle.getLaneID, vehicle.getLength, vehicle.getWidth),
-                strict=True,
-            )
-        )  # fmt: skip
+        self._reader = SumoReader(sumo)
         self._fill(traffic)
         for _ in range(round((warm_up + self._rng.uniform(0.0, CYCLE)) / DT)):
             self._advance()
@@ -97,7 +81,9 @@ class SumoSimulator:
         self._ego = VehicleState(EGO_ID, pose, lane, speed=speed, length=self._limits.length, width=self._limits.width)
         self._place(self._ego)
         self._advance()
-        self._sumo.vehicle.subscribeContext(EGO_ID, self._sumo.CMD_GET_VEHICLE_VARIABLE, SENSING_RANGE, self._fields)
+        self._sumo.vehicle.subscribeContext(
+            EGO_ID, self._sumo.CMD_GET_VEHICLE_VARIABLE, SENSING_RANGE, self._reader.fields
+        )
         self._place(self._ego)
         self._advance()
         return self._scene()
@@ -121,13 +107,7 @@ class SumoSimulator:
 
     def everyone(self) -> Vehicles:
         """Return all other vehicles of the town, for pictures and records."""
-        return self._vehicles(
-            {
-                vehicle: {field: get(vehicle) for field, get in self._getters.items()}
-                for vehicle in self._sumo.vehicle.getIDList()
-                if vehicle != EGO_ID
-            }
-        )
+        return self._reader.everyone(self._steps)
 
     def close(self) -> None:
         self._sumo.close()
@@ -241,48 +221,12 @@ class SumoSimulator:
         seen: dict[str, dict[int, Any]] = sumo.vehicle.getContextSubscriptionResults(EGO_ID)
         if ego is None or EGO_ID not in sumo.vehicle.getIDList():
             raise SimulatorError("the ego vanished from the simulation")
-        seen.pop(EGO_ID, None)
         x, y, heading = ego.pose
         half = ego.length / 2
         lane = self._lane_at(x + half * math.cos(heading), y + half * math.sin(heading))
         self._ego = ego = replace(ego, lane=lane, z=sumo.vehicle.getPosition3D(EGO_ID)[2])
         signals = {light: sumo.trafficlight.getRedYellowGreenState(light) for light in self._network.signals}
-        return Scene(round(sumo.simulation.getTime(), 3), ego, self._vehicles(seen), signals)
-
-    def _vehicles(self, seen: dict[str, dict[int, Any]]) -> Vehicles:
-        """Return vehicles from SUMO's values, in the order of their ids."""
-        sumo = self._sumo
-        states = []
-        for vehicle in sorted(seen):
-            values = seen[vehicle]
-            x, y, z = values[sumo.VAR_POSITION3D]
-            heading = wrap_angle(math.radians(90.0 - values[sumo.VAR_ANGLE]))
-            length = values[sumo.VAR_LENGTH]
-            states.append(
-                VehicleState(
-                    id=vehicle,
-                    pose=Pose(x - length / 2 * math.cos(heading), y - length / 2 * math.sin(heading), heading),
-                    lane=values[sumo.VAR_LANE_ID],
-                    z=z,
-                    speed=values[sumo.VAR_SPEED],
-                    yaw_rate=self._yaw_rate(vehicle, heading),
-                    acceleration=values[sumo.VAR_ACCELERATION],
-                    length=length,
-                    width=values[sumo.VAR_WIDTH],
-                )
-            )
-        return Vehicles.of(states)
-
-    def _yaw_rate(self, vehicle: str, heading: float) -> float:
-        """Return the mean yaw rate over the last half second in which the vehicle was seen [rad/s]."""
-        now = self._steps
-        history = self._headings.setdefault(vehicle, deque(maxlen=YAW_WINDOW))
-        if history and now - history[-1][0] > 1:
-            history.clear()
-        if not history or history[-1][0] != now:
-            history.append((now, heading))
-        first, then = history[0]
-        return wrap_angle(heading - then) / ((now - first) * DT) if now > first else 0.0
+        return Scene(round(sumo.simulation.getTime(), 3), ego, self._reader.vehicles(seen, self._steps), signals)
 
 
 def _start(network: RoadNetwork, seed: int) -> ModuleType:

@@ -1,0 +1,66 @@
+"""What SUMO says of vehicles, in our units: front bumper and compass angle become the box's centre and a heading."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from collections.abc import Mapping
+from types import ModuleType
+from typing import Any
+
+from tmpud.geometry import wrap_angle
+from tmpud.scene import Vehicles
+
+EGO_ID = "ego"
+DT = 0.05  # [s] of one step
+YAW_WINDOW = 11  # steps over which a yaw rate is measured
+
+
+class SumoReader:
+    """Turns libsumo's values into arrays, and measures yaw rates, which SUMO does not know."""
+
+    def __init__(self, sumo: ModuleType) -> None:
+        vehicle = sumo.vehicle
+        self._sumo = sumo
+        self._getters = {
+            sumo.VAR_POSITION3D: vehicle.getPosition3D,
+            sumo.VAR_ANGLE: vehicle.getAngle,
+            sumo.VAR_SPEED: vehicle.getSpeed,
+            sumo.VAR_ACCELERATION: vehicle.getAcceleration,
+            sumo.VAR_LANE_ID: vehicle.getLaneID,
+            sumo.VAR_LENGTH: vehicle.getLength,
+            sumo.VAR_WIDTH: vehicle.getWidth,
+        }
+        self.fields = tuple(self._getters)  # what to subscribe to
+        self._headings: dict[str, deque[tuple[int, float]]] = {}
+
+    def everyone(self, step: int) -> Vehicles:
+        """Return all vehicles but the ego; ``step`` numbers the simulator's steps."""
+        ids = self._sumo.vehicle.getIDList()
+        return self.vehicles({v: {field: get(v) for field, get in self._getters.items()} for v in ids}, step)
+
+    def vehicles(self, seen: Mapping[str, Mapping[int, Any]], step: int) -> Vehicles:
+        """Return vehicles but the ego from SUMO's values, in the order of their ids."""
+        sumo = self._sumo
+        ids = tuple(sorted(seen.keys() - {EGO_ID}))
+        rows = []
+        for vehicle in ids:
+            values = seen[vehicle]
+            x, y, z = values[sumo.VAR_POSITION3D]
+            heading = wrap_angle(math.radians(90.0 - values[sumo.VAR_ANGLE]))
+            length = values[sumo.VAR_LENGTH]
+            x, y = x - length / 2 * math.cos(heading), y - length / 2 * math.sin(heading)
+            yaw_rate = self._yaw_rate(vehicle, heading, step)
+            speed, acceleration = values[sumo.VAR_SPEED], values[sumo.VAR_ACCELERATION]
+            rows.append((x, y, z, heading, speed, yaw_rate, acceleration, length, values[sumo.VAR_WIDTH]))
+        return Vehicles.of_rows(ids, tuple(seen[vehicle][sumo.VAR_LANE_ID] for vehicle in ids), rows)
+
+    def _yaw_rate(self, vehicle: str, heading: float, step: int) -> float:
+        """Return the mean yaw rate over the last half second in which the vehicle was seen [rad/s]."""
+        history = self._headings.setdefault(vehicle, deque(maxlen=YAW_WINDOW))
+        if history and step - history[-1][0] > YAW_WINDOW:
+            history.clear()
+        if not history or history[-1][0] != step:
+            history.append((step, heading))
+        first, then = history[0]
+        return wrap_angle(heading - then) / ((step - first) * DT) if step > first else 0.0
