@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -12,7 +13,7 @@ from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.figure import Figure
 
 from tmpud.events import Estimated, Event, Executed, Finished, Frame, Header, Judged, Planned
-from tmpud.geometry import Point
+from tmpud.geometry import Point, Polyline, Pose
 from tmpud.motion.mapping import StateMapping
 from tmpud.motion.path import find_path, outline
 from tmpud.presets import PRESETS
@@ -23,7 +24,9 @@ from tmpud.symbols import Place, ServiceRequest, State, TaskPlan
 LOW = 0.5  # estimates below this are marked
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")  # told apart by the colour-blind
 ROAD, JUNCTION, MARKING, DRIVEN = "#c9ccd1", "#bfc3c9", "#ffffff", "#1a1a1a"
+CAR, RISK = "#6b7280", "#c00000"
 MOST_PLANS = 5  # drawn
+ZOOM = 45.0  # [m] either side of the ego
 
 
 def draw_run(network: RoadNetwork, events: Iterable[Event], file: Path) -> None:
@@ -31,21 +34,27 @@ def draw_run(network: RoadNetwork, events: Iterable[Event], file: Path) -> None:
     log = list(events)
     header = next(event for event in log if isinstance(event, Header))
     mapping = _mapping(network, header)
-    figure = Figure(figsize=(11, 8.5), layout="constrained")
+    figure = Figure(figsize=(13, 8.5), layout="constrained")
     FigureCanvasAgg(figure)
-    axes = figure.add_subplot()
-    draw_network(axes, network)
+    grid = figure.add_gridspec(2, 2, width_ratios=(3, 2))
+    town, why = figure.add_subplot(grid[:, 0]), figure.add_subplot(grid[1, 1])
     plans = [event for event in log if isinstance(event, Planned)]
-    for number, planned in enumerate(plans[:MOST_PLANS]):
-        _draw_plan(axes, plan_outline(network, mapping, planned.plan), planned, number)
-    _draw_driven(axes, log)
-    _draw_estimates(axes, log)
-    _draw_ends(axes, mapping, plans)
-    _draw_scale(axes)
-    axes.set_title(_title(header, log), loc="left", fontsize=11)
-    if axes.get_legend_handles_labels()[0]:
-        axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False, fontsize=9)
-    figure.savefig(file, dpi=130)
+    for axes in (town, why):
+        draw_network(axes, network)
+        for number, planned in enumerate(plans[:MOST_PLANS]):
+            _draw_plan(axes, plan_outline(network, mapping, planned.plan), planned, number)
+        _draw_driven(axes, log)
+    _draw_estimates(town, log)
+    _draw_ends(town, mapping, plans)
+    _draw_scale(town, 100)
+    _draw_moment(why, log)
+    figure.suptitle(_title(header, log), x=0.01, ha="left", fontsize=12)
+    handles, labels = town.get_legend_handles_labels()
+    if handles:
+        legend = figure.add_subplot(grid[0, 1])
+        legend.axis("off")
+        legend.legend(handles, labels, loc="upper left", frameon=False, fontsize=10, title="The whole town (left)")
+    figure.savefig(file, dpi=110)
 
 
 def draw_network(axes: Axes, network: RoadNetwork) -> None:
@@ -71,13 +80,10 @@ def plan_outline(network: RoadNetwork, mapping: StateMapping, plan: TaskPlan) ->
 
 def _band(points: Iterable[Point], width: float) -> list[Point]:
     """Return the outline of a lane."""
-    from tmpud.geometry import Polyline
-
     line = Polyline(points)
-    poses = [line.pose_at(station) for station in line.stations]
     left = [(line.pose_at(s, width / 2).x, line.pose_at(s, width / 2).y) for s in line.stations]
     right = [(line.pose_at(s, -width / 2).x, line.pose_at(s, -width / 2).y) for s in line.stations]
-    return [*left, *right[::-1]] if poses else []
+    return [*left, *right[::-1]]
 
 
 def _mapping(network: RoadNetwork, header: Header) -> StateMapping:
@@ -111,18 +117,16 @@ def _draw_estimates(axes: Axes, log: list[Event]) -> None:
     low = [event for event in log if isinstance(event, Estimated) and event.safe < LOW and event.trajectory]
     if low:
         x, y = [e.trajectory[0][1] for e in low], [e.trajectory[0][2] for e in low]
-        axes.scatter(x, y, s=160, facecolors="none", edgecolors="#c00000", linewidths=2, label="Safe was low", zorder=6)
+        axes.scatter(x, y, s=160, facecolors="none", edgecolors=RISK, linewidths=2, label="Safe was low", zorder=6)
         for event, ex, ey in zip(low, x, y, strict=True):
             text = f"{event.step.action}: Safe {event.safe:.2f}"
-            axes.annotate(
-                text, (ex, ey), xytext=(8, 10), textcoords="offset points", fontsize=8, color="#c00000", zorder=7
-            )
+            axes.annotate(text, (ex, ey), xytext=(8, 10), textcoords="offset points", fontsize=8, color=RISK, zorder=7)
     judged = [event for event in log if isinstance(event, Judged)]
     where = {event.time: event.ego for event in log if isinstance(event, Frame)}
     spots = [where[min(where, key=lambda t: abs(t - event.time))] for event in judged] if where else []
     if spots:
         x, y = [spot[0] / 100 for spot in spots], [spot[1] / 100 for spot in spots]
-        axes.scatter(x, y, s=120, marker="X", color="#c00000", label="judged unsafe", zorder=8)
+        axes.scatter(x, y, s=120, marker="X", color=RISK, label="judged unsafe", zorder=8)
 
 
 def _draw_ends(axes: Axes, mapping: StateMapping, plans: list[Planned]) -> None:
@@ -137,16 +141,46 @@ def _draw_ends(axes: Axes, mapping: StateMapping, plans: list[Planned]) -> None:
         )
 
 
-def _draw_scale(axes: Axes) -> None:
-    """Draw a bar of 100 m into the lower left corner."""
+def _draw_scale(axes: Axes, length: float) -> None:
+    """Draw a bar of a length [m] into the lower left corner."""
     (x, _), (y, _) = axes.get_xlim(), axes.get_ylim()
-    axes.add_collection(LineCollection([[(x, y), (x + 100, y)]], colors="#111111", linewidths=3, zorder=9))
-    axes.annotate("100 m", (x + 50, y), xytext=(0, 4), textcoords="offset points", ha="center", fontsize=9)
+    axes.add_collection(LineCollection([[(x, y), (x + length, y)]], colors="#111111", linewidths=3, zorder=9))
+    label = f"{length:g} m"
+    axes.annotate(label, (x + length / 2, y), xytext=(0, 4), textcoords="offset points", ha="center", fontsize=9)
+
+
+def _draw_moment(axes: Axes, log: list[Event]) -> None:
+    """Zoom in on the first estimate that was low: the ego, the cars around it, and the one that is the risk."""
+    low = next((e for e in log if isinstance(e, Estimated) and e.safe < LOW), None)
+    frame = next((e for e in log if isinstance(e, Frame) and low and e.time >= low.time), None)
+    if low is None or frame is None:
+        axes.set_visible(False)
+        return
+    cars = dict(zip(frame.ids, frame.others, strict=True))
+    axes.add_collection(PolyCollection([_box(row) for row in cars.values()], facecolors=CAR, zorder=6))
+    axes.add_collection(PolyCollection([_box(frame.ego)], facecolors=DRIVEN, zorder=7))
+    if low.worst in cars:
+        axes.add_collection(PolyCollection([_box(cars[low.worst])], facecolors=RISK, zorder=7))
+    x, y = frame.ego[0] / 100, frame.ego[1] / 100
+    axes.set_xlim(x - ZOOM, x + ZOOM)
+    axes.set_ylim(y - ZOOM / 2, y + ZOOM / 2)
+    _draw_scale(axes, 10)
+    what = f"{low.time:.1f} s: {low.step.action} would be unsafe, Safe = {low.safe:.2f}"
+    axes.set_title(f"{what}\nego black, nearest risk {low.worst} red", loc="left", fontsize=10)
+
+
+def _box(row: tuple[int, int, int, int]) -> list[Point]:
+    """Return the outline of a car of usual size from a frame's row."""
+    pose = Pose(row[0] / 100, row[1] / 100, row[2] / 1000)
+    ex, ey = math.cos(pose.heading), math.sin(pose.heading)
+    corners = ((2.4, 0.9), (2.4, -0.9), (-2.4, -0.9), (-2.4, 0.9))
+    return [(pose.x + a * ex - b * ey, pose.y + a * ey + b * ex) for a, b in corners]
 
 
 def _title(header: Header, log: list[Event]) -> str:
     mission = header.mission
     end = next((event for event in log if isinstance(event, Finished)), None)
-    result = f": {end.status}, {end.distance:.0f} m in {end.travel_time:.0f} s, {end.replans} replans" if end else ""
+    replans = f"{end.replans} replan{'s' * (end.replans != 1)}" if end else ""
+    result = f": {end.status}, {end.distance:.0f} m in {end.travel_time:.0f} s, {replans}" if end else ""
     done = sum(isinstance(event, Executed) for event in log)
     return f"{header.map['name']}, {mission['algorithm']}, seed {mission['seed']}{result}, {done} actions"
