@@ -84,7 +84,7 @@ def drive(
         seed=seed,
         preset=preset,
     )
-    name = f"{algorithm}-{seed}"
+    name = f"{Path(map_).name.split('.')[0]}-{preset}-{algorithm}-{seed}".lower()
     _drive(mission, out or Path("runs") / name, as_json=as_json, frames=frames)
 
 

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from tmpud.errors import InvalidStateError, NoPlanError
+from tmpud.errors import InvalidStateError, NoPlanError, SimulatorError
 from tmpud.events import Event, Finished, Header
 from tmpud.execution.baselines import communication
 from tmpud.execution.deliberation import Deliberation
@@ -81,7 +81,6 @@ def drive(
     network = load_map(mission.map, preset.segment_length)
     request = service_request(network, mission.start, (mission.goal,), mission.via, mission.seed)
     watch = stopwatch or Stopwatch()
-    yield _header(mission, preset, network, request)
     mapping = StateMapping(network, request, preset, mission.seed)
     motion = LaneMotionPlanner(network, mapping)
     planner = AspPlanner(network, preset)
@@ -96,8 +95,9 @@ def drive(
         domain = Domain(network, request)
         start = domain.start_state()
         world.enter(*mapping(start))
+        yield _header(mission, preset, network, request)
         mind = Deliberation(request, domain, planner, motion, world)
-        status, message = yield from _ended(run_tmpud(start, mind, communicate))
+        status, message = yield from _ended(run_tmpud(start, mind, communicate), world)
     finally:
         town.close()
     metrics = {
@@ -109,7 +109,7 @@ def drive(
     yield Finished(world.time, status, message, world.distance, travelled, mind.replans, metrics)
 
 
-def _ended(run: Generator[Event, None, Outcome]) -> Generator[Event, None, tuple[str, str]]:
+def _ended(run: Generator[Event, None, Outcome], world: SimulatedWorld) -> Generator[Event, None, tuple[str, str]]:
     """Pass a run's events on and return its status with a word of explanation."""
     try:
         outcome = yield from run
@@ -117,7 +117,9 @@ def _ended(run: Generator[Event, None, Outcome]) -> Generator[Event, None, tuple
         return "NO_PLAN", str(error)
     except InvalidStateError as error:
         return "INVALID_STATE", str(error)
-    return STATUS[outcome], ""
+    except SimulatorError as error:
+        return "SIM_CRASH", str(error)
+    return STATUS[outcome], world.refused or ""
 
 
 def _header(mission: Mission, preset: Preset, network: RoadNetwork, request: ServiceRequest) -> Header:

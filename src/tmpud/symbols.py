@@ -76,3 +76,27 @@ class ServiceRequest:
 
     start: Place
     goals: tuple[Place, ...]
+
+    def start_state(self) -> State:
+        """Return the state a drive begins in: goals that the start itself reaches are done."""
+        return State(self.start.segments[0], self._skip(self.start.segments[0], 0))
+
+    def leg_after(self, segment: str, leg: int) -> int:
+        """Return the leg that arriving on a segment in some leg leads to."""
+        if leg == len(self.goals) or segment not in self.goals[leg].segments:
+            return leg
+        return self._skip(segment, leg + 1)
+
+    def _skip(self, segment: str, leg: int) -> int:
+        """Return the first leg from ``leg`` on whose goal is not reached just by being on a segment."""
+        while leg < len(self.goals) and self.goals[leg].station is None and segment in self.goals[leg].segments:
+            leg += 1
+        return leg
+
+    def positions(self) -> dict[State, float]:
+        """Return the states whose pose the request itself names, with their station on the lane [m]."""
+        found = {} if self.start.station is None else {self.start_state(): self.start.station}
+        for leg, goal in enumerate(self.goals):
+            if goal.station is not None:
+                found[State(goal.segments[0], self.leg_after(goal.segments[0], leg))] = goal.station
+        return found

@@ -13,7 +13,7 @@ from tmpud.protocols import MotionPlanner, TaskPlanner, World
 from tmpud.safety.estimator import SafetyEstimate
 from tmpud.symbols import Action, ServiceRequest, State, TaskPlan, Transition
 from tmpud.task.domain import Domain
-from tmpud.task.utility import Utility
+from tmpud.task.utility import Utility, penalty
 
 ALTERNATIVES = 4  # other plans that are listed beside the best one
 
@@ -65,9 +65,13 @@ class Deliberation:
         return chosen
 
     def most_conservative(self, plans: list[TaskPlan]) -> TaskPlan:
-        """Return the plan with the least safety penalty, the latest of equals."""
-        utility = Utility(self.preset, self.known.cost, self.known.safe, {})
-        return min(reversed(plans), key=lambda plan: utility.total(plan).penalty)
+        """Return the drivable plan that risks least: the least penalty above that of Safe = 1; the latest of equals."""
+        return min(reversed(plans), key=self._risk)
+
+    def _risk(self, plan: TaskPlan) -> float:
+        if any(math.isinf(self.known.cost[step]) for step in plan):
+            return math.inf
+        return sum(penalty(self.known.safe[step], self.preset) - penalty(1.0, self.preset) for step in plan)
 
     def drop_first(self, plan: TaskPlan) -> Generator[Event, None, TaskPlan]:
         """Return the rest of a plan; where it ended short of the goal, as holding a lane does, plan anew."""
@@ -77,6 +81,14 @@ class Deliberation:
             return plan[1:]
         new_plan = self.plan_or_hold(here)
         yield self.planned(new_plan, "the lane was held")
+        return new_plan
+
+    def bar(self, step: Transition) -> Generator[Event, None, TaskPlan]:
+        """Return the plan after a step turned out to have no path from where the ego is."""
+        self.replans += 1
+        self.known.forbid(step, self.known.safe[step], self.world.time)
+        new_plan = self.plan_or_hold(step.state)
+        yield self.planned(new_plan, f"{step.action} cannot be driven from here")
         return new_plan
 
     def plan_or_hold(self, state: State) -> TaskPlan:
@@ -106,6 +118,7 @@ class Deliberation:
         utility = Utility(self.preset, cost, safe, {})
         terms = [utility.terms(step) for step in plan]
         others = self.planner.alternatives(start, self.request, cost, safe, ALTERNATIVES)
+        others = tuple(other for other in others if other.plan != plan)
         return Planned(
             time=self.world.time,
             leg=start.leg,

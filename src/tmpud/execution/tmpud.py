@@ -38,9 +38,7 @@ def run_tmpud(start: State, mind: Deliberation, communicate: Communicate) -> Gen
             outcome = yield from mind.world.execute(step, plan[1:])
             yield Executed(mind.world.time, step, outcome.value, estimated, mind.world.distance)
             if outcome is Outcome.INFEASIBLE:
-                mind.known.forbid(step, mind.known.safe[step], mind.world.time)
-                plan = mind.plan(step.state)
-                yield mind.planned(plan, f"{step.action} cannot be driven from here")
+                plan = yield from mind.bar(step)
             elif outcome is not Outcome.DONE:
                 return outcome
             else:

@@ -75,8 +75,14 @@ class SimulatedWorld:
         Within AT_POSE of f(s) that is the length from f(s), so that a step's overshoot decides between no two plans.
         """
         here, canonical = self._motion.where(self.scene, step), self._mapping(step.state)
-        start = canonical if abs(here.station - canonical.station) < AT_POSE else here
-        return self._motion.path_length_from(start, step)
+        length = self._motion.path_length_from(here, step)
+        at_pose = abs(here.station - canonical.station) < AT_POSE and math.isfinite(length)
+        return self._motion.path_length_from(canonical, step) if at_pose else length
+
+    @property
+    def refused(self) -> str | None:
+        """The first command that the independent brake refused, None while it has refused none."""
+        return self._guard.refused
 
     def estimate(self, step: Transition) -> SafetyEstimate:
         """Return Algorithm 1's estimate for the present snapshot; asked twice, it is the same one."""

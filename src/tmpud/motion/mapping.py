@@ -30,11 +30,7 @@ class StateMapping:
         self.network = network
         self._sampled = preset.pose == "sampled"
         self._seed = seed
-        self._fixed: dict[State, float] = {}
-        places = (request.start, *request.goals)
-        for leg, place in enumerate(places):
-            if place.station is not None:
-                self._fixed[State(place.segments[0], leg)] = place.station
+        self._fixed = request.positions()
 
     def __call__(self, state: State) -> RoadPoint:
         """Return where the centre of the ego's box is in a state."""
@@ -45,6 +41,10 @@ class StateMapping:
             return RoadPoint(segment.lane, segment.middle)
         share = random.Random(f"{self._seed}/{state.segment}").uniform(1 / 3, 2 / 3)  # noqa: S311
         return RoadPoint(segment.lane, segment.start + share * (segment.end - segment.start))
+
+    def is_fixed(self, state: State) -> bool:
+        """Whether the request names the position of a state."""
+        return state in self._fixed
 
     def pose(self, state: State) -> Pose:
         """Return f(s) as a pose in the map's frame."""

@@ -112,7 +112,8 @@ def _changes(lane: Lane, target: Lane, station: float, goal: RoadPoint) -> Itera
     length = min(MERGE_LENGTH, limit - station)
     if length >= SHORTEST_MERGE:
         end = station + length
-        yield (Change(lane, target, station, end),), RoadPoint(target.id, min(end * ratio, target.length))
+        at_goal = goal.lane == target.id and end >= limit - 1e-6
+        yield (Change(lane, target, station, end),), goal if at_goal else RoadPoint(target.id, end * ratio)
 
 
 def outline(move: Move, spacing: float = 1.0) -> list[Point]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from tmpud.motion.mapping import RoadPoint, StateMapping
-from tmpud.motion.path import MERGE_LENGTH, SHORTEST_MERGE, Cross, Move, find_path
+from tmpud.motion.path import MERGE_LENGTH, SHORTEST_MERGE, Change, Cross, Move, find_path
 from tmpud.roads.network import RoadNetwork
 from tmpud.symbols import Transition
 
@@ -32,8 +32,11 @@ class PathPlanner:
         moves = self.moves(self._mapping(transition.state), transition) or ()
         found: list[str] = []
         for move in moves:
-            found += move.connection.internal_lanes if isinstance(move, Cross) else [move.lane.id]
-        return tuple(found)
+            if isinstance(move, Cross):
+                found += move.connection.internal_lanes
+            else:
+                found += [move.lane.id, move.target.id] if isinstance(move, Change) else [move.lane.id]
+        return tuple(dict.fromkeys(found))
 
     def moves(self, here: RoadPoint, transition: Transition) -> tuple[Move, ...] | None:
         """Return the path from a point to x', None where there is none."""
@@ -42,7 +45,8 @@ class PathPlanner:
     def goal(self, here: RoadPoint, transition: Transition) -> RoadPoint:
         """Return x' = f(s'); where lanes are not cut, a merge goes to the nearest pose that it can reach."""
         goal = self._mapping(transition.next_state)
-        if not (transition.action.is_merge and math.isinf(self._network.segment_length)):
+        fixed = self._mapping.is_fixed(transition.next_state)
+        if fixed or not (transition.action.is_merge and self._network.uncut):
             return goal
         lane = self._network.lanes[goal.lane]
         ratio = lane.length / self._network.lanes[here.lane].length

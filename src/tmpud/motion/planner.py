@@ -101,6 +101,7 @@ class LaneMotionPlanner(PathPlanner):
         self, transition: Transition, scene: Scene, times: FloatArray, speed: float | None = None
     ) -> Trajectory:
         """Return the ego's planned motion from where it is: the speed planner rolled out, or a constant speed."""
+        self._right_of_way.observe(scene)
         drive = self._start(transition, scene, ())
         if speed is not None:
             stations, speeds = drive.station(scene) + speed * times, np.full(len(times), speed)

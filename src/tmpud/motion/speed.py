@@ -100,7 +100,3 @@ def follow(speed: float, wished: float, obstacle: Obstacle, standing_gap: float)
     desired = standing_gap + max(speed * HEADWAY + closing, 0.0)
     free = 1 - (speed / max(wished, 0.1)) ** 4
     return ACCELERATION * (free - (desired / max(obstacle.gap, 0.1)) ** 2)
-
-
-def _spacing(route: Route) -> float:
-    return route.length / (len(route.points) - 1)

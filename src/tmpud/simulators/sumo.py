@@ -9,7 +9,7 @@ import contextlib
 import math
 import random
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
@@ -57,16 +57,68 @@ class SumoSimulator:
         self._roads: list[str] = []  # the announced roads
         self._way: list[tuple[str, Polyline]] = []  # the announced lanes
         self._lines: dict[str, Polyline | None] = {}
-        self._sumo = sumo = _start(network, seed)
-        self._reader = SumoReader(sumo)
-        self._fill(traffic)
-        for _ in range(round((warm_up + self._rng.uniform(0.0, CYCLE)) / DT)):
-            self._advance()
+        places = self._circulation.places(traffic)
+        self._sumo = _start(network, seed)
+        self._reader = SumoReader(self._sumo)
+        with self._errors():
+            self._fill(places)
+            for _ in range(round((warm_up + self._rng.uniform(0.0, CYCLE)) / DT)):
+                self._advance()
 
     # The Simulator protocol ------------------------------------------------------------------------------------
 
     def reset(self, lane: str, station: float) -> Scene:
         """Put the ego on a lane at the speed of the flow, or such that it could stop before the lane ends."""
+        with self._errors():
+            return self._appear(lane, station)
+
+    def step(self, control: Control) -> Scene:
+        """Move the ego by one command, let the others react, and return what there is now."""
+        if self._ego is None:
+            raise SimulatorError("step() before reset()")
+        self._ego = step(self._ego, control, DT, self._limits)
+        with self._errors():
+            self._place(self._ego)
+            self._advance()
+            return self._scene()
+
+    def announce(self, lanes: Sequence[str]) -> None:
+        """Tell the others by which lanes the ego means to go on, so that they give way to it at junctions."""
+        self._way = [(lane, line) for lane in dict.fromkeys(lanes) if (line := self._line(lane))]
+        way = [lane for lane in lanes if lane in self._network.lanes]
+        way += self._onward(way[-1])
+        roads = [self._network.lanes[lane].edge for lane in way]
+        self._roads = [road for road, before in zip(roads, [None, *roads], strict=False) if road != before]
+
+    def everyone(self) -> Vehicles:
+        """Return all other vehicles of the town, for pictures and records."""
+        return self._reader.everyone(self._steps)
+
+    def close(self) -> None:
+        """End the simulation; a second call does nothing."""
+        if self._sumo.isLoaded():
+            self._sumo.close()
+
+    def __enter__(self) -> SumoSimulator:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    @contextlib.contextmanager
+    def _errors(self) -> Iterator[None]:
+        """Turn what libsumo raises into SimulatorError, and end the simulation."""
+        try:
+            yield
+        except (self._sumo.TraCIException, self._sumo.FatalTraCIError) as error:
+            self._sumo.close()
+            raise SimulatorError(f"SUMO failed after {self._steps} steps: {error}") from error
+
+    # Inside ----------------------------------------------------------------------------------------------------
+
+    def _appear(self, lane: str, station: float) -> Scene:
         pose = self._network.lanes[lane].centre.pose_at(station)
         self._clear(pose)
         edge = self._network.lanes[lane].edge
@@ -87,40 +139,6 @@ class SumoSimulator:
         self._place(self._ego)
         self._advance()
         return self._scene()
-
-    def step(self, control: Control) -> Scene:
-        """Move the ego by one command, let the others react, and return what there is now."""
-        if self._ego is None:
-            raise SimulatorError("step() before reset()")
-        self._ego = step(self._ego, control, DT, self._limits)
-        self._place(self._ego)
-        self._advance()
-        return self._scene()
-
-    def announce(self, lanes: Sequence[str]) -> None:
-        """Tell the others by which lanes the ego means to go on, so that they give way to it at junctions."""
-        self._way = [(lane, line) for lane in dict.fromkeys(lanes) if (line := self._line(lane))]
-        way = [lane for lane in lanes if lane in self._network.lanes]
-        way += self._onward(way[-1])
-        roads = [self._network.lanes[lane].edge for lane in way]
-        self._roads = [road for road, before in zip(roads, [None, *roads], strict=False) if road != before]
-
-    def everyone(self) -> Vehicles:
-        """Return all other vehicles of the town, for pictures and records."""
-        return self._reader.everyone(self._steps)
-
-    def close(self) -> None:
-        self._sumo.close()
-
-    def __enter__(self) -> SumoSimulator:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
-
-    # Inside ----------------------------------------------------------------------------------------------------
 
     def _onward(self, lane: str, roads: int = 2) -> list[str]:
         """Return some lanes that follow a lane: SUMO takes away a vehicle that comes to the end of its route."""
@@ -175,13 +193,13 @@ class SumoSimulator:
         if self._steps % EXTEND_EVERY == 0:
             self._extend_routes()
 
-    def _fill(self, count: int) -> None:
-        """Put ``count`` cars on the road, each with a wished speed of its own and a random walk to drive."""
+    def _fill(self, places: list[tuple[str, float]]) -> None:
+        """Put a car on each place on the road, each with a wished speed of its own and a random walk to drive."""
         sumo = self._sumo
         sumo.vehicletype.copy("DEFAULT_VEHTYPE", "ego")
         sumo.vehicletype.setLength("ego", self._limits.length)
         sumo.vehicletype.setWidth("ego", self._limits.width)
-        for number, (lane, station) in enumerate(self._circulation.places(count)):
+        for number, (lane, station) in enumerate(places):
             vehicle, road = f"car{number}", self._network.lanes[lane].edge
             sumo.route.add(vehicle, [road, *self._circulation.walk(road)])
             index = str(self._network.lanes[lane].index)
@@ -238,6 +256,8 @@ def _start(network: RoadNetwork, seed: int) -> ModuleType:
             raise SimulatorError(f"libsumo cannot be imported ({error}): pip install libsumo") from error
     if not Path(network.source).is_file():
         raise SimulatorError(f"{network.name}: SUMO needs the map's file, and {network.source!r} is none")
+    if libsumo.isLoaded():
+        raise SimulatorError("SUMO holds one simulation per process: close the other, or use a process for each")
     try:
         libsumo.start(["sumo", "--net-file", network.source, "--seed", str(seed % 2**31), *OPTIONS])
     except Exception as error:  # libsumo's own class cannot be named before it is imported

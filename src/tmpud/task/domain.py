@@ -26,8 +26,7 @@ class Domain:
 
     def start_state(self) -> State:
         """Return the state a drive begins in: goals that the start itself reaches are done."""
-        segment = self.request.start.segments[0]
-        return State(segment, self._skip(segment, 0))
+        return self.request.start_state()
 
     def check(self, state: State) -> None:
         """Raise RequestError where a state is not one of this domain."""
@@ -60,15 +59,7 @@ class Domain:
 
     def leg_after(self, segment: str, leg: int) -> int:
         """Return the leg that arriving on a segment in some leg leads to."""
-        if leg == self.last or segment not in self._goals[leg]:
-            return leg
-        return self._skip(segment, leg + 1)
-
-    def _skip(self, segment: str, leg: int) -> int:
-        goals = self.request.goals
-        while leg < self.last and goals[leg].station is None and segment in self._goals[leg]:
-            leg += 1
-        return leg
+        return self.request.leg_after(segment, leg)
 
     def _at_position(self, segment: str, leg: int) -> bool:
         """Whether the leg's goal is a position on the segment: it may be reached by driving on within it."""

@@ -15,7 +15,8 @@ from matplotlib.figure import Figure
 from tmpud.events import Estimated, Event, Executed, Finished, Frame, Header, Judged, Planned
 from tmpud.geometry import Point, Polyline, Pose
 from tmpud.motion.mapping import StateMapping
-from tmpud.motion.path import find_path, outline
+from tmpud.motion.path import outline
+from tmpud.motion.path_planner import PathPlanner
 from tmpud.presets import PRESETS
 from tmpud.roads.network import RoadNetwork
 from tmpud.story import plan_name
@@ -70,10 +71,10 @@ def draw_network(axes: Axes, network: RoadNetwork) -> None:
 
 def plan_outline(network: RoadNetwork, mapping: StateMapping, plan: TaskPlan) -> list[Point]:
     """Return the points of the path a plan drives."""
+    paths = PathPlanner(network, mapping)
     points: list[Point] = []
     for step in plan:
-        moves = find_path(network, mapping(step.state), mapping(step.next_state), step.action) or ()
-        for move in moves:
+        for move in paths.moves(mapping(step.state), step) or ():
             points += outline(move)
     return points
 
@@ -121,7 +122,7 @@ def _draw_estimates(axes: Axes, log: list[Event]) -> None:
         for event, ex, ey in zip(low, x, y, strict=True):
             text = f"{event.step.action}: Safe {event.safe:.2f}"
             axes.annotate(text, (ex, ey), xytext=(8, 10), textcoords="offset points", fontsize=8, color=RISK, zorder=7)
-    judged = [event for event in log if isinstance(event, Judged)]
+    judged = [event for event in log if isinstance(event, Judged) and event.kind in ("collision", "forced_stop")]
     where = {event.time: event.ego for event in log if isinstance(event, Frame)}
     spots = [where[min(where, key=lambda t: abs(t - event.time))] for event in judged] if where else []
     if spots:
