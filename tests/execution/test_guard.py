@@ -56,3 +56,10 @@ def test_it_says_which_command_it_refused_first() -> None:
 def test_it_brakes_with_the_wheels_straight(command: Control | None) -> None:
     assert Guard().check(command) == BRAKE
     assert within_limits(BRAKE)
+
+
+def test_after_a_refused_command_it_brakes_for_good() -> None:
+    guard = Guard()
+    assert guard.check(Control(1.0, 0.0)) == Control(1.0, 0.0)
+    assert guard.check(None) == BRAKE
+    assert guard.check(Control(1.0, 0.0)) == BRAKE

@@ -20,7 +20,7 @@ from tmpud.events import Estimated, Planned
 from tmpud.presets import PAPER, RELEASED, TMPUD, Preset
 from tmpud.roads.network import RoadNetwork
 from tmpud.scene import Outcome
-from tmpud.symbols import State, Transition
+from tmpud.symbols import Action, State, Transition
 from tmpud.task.domain import Domain
 
 
@@ -210,3 +210,13 @@ def test_the_released_preset_estimates_merges_only() -> None:
 def test_safe_expires_as_the_preset_says(preset: Preset, expires: bool) -> None:
     drive = run({AREA_1: 0.5}, preset=replace(preset, segment_length=60.0), seconds=31.0)
     assert (AREA_1 in drive.mind.known.safe) is not expires
+
+
+@pytest.mark.parametrize("preset", [TMPUD, PAPER])
+def test_the_most_conservative_plan_risks_least_whatever_each_action_pays(preset: Preset) -> None:
+    mind = run(preset=preset).mind
+    on = Transition(DRIVE_ON.next_state, Action.FORWARD, State("b_0/0", 0))
+    mind.known.safe[AREA_1] = 0.0
+    assert mind.most_conservative([(AREA_1,), (DRIVE_ON, on, AREA_2)]) == (DRIVE_ON, on, AREA_2)
+    mind.known.cost[on] = math.inf
+    assert mind.most_conservative([(AREA_1,), (DRIVE_ON, on, AREA_2)]) == (AREA_1,), "the other cannot be driven"

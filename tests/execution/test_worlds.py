@@ -196,7 +196,7 @@ def test_the_path_is_measured_from_where_the_ego_is() -> None:
 def test_after_a_bad_command_it_brakes_to_a_standstill_and_the_state_is_invalid(bad: Control | None) -> None:
     here = world()
     assert isinstance(here._motion, Motion)
-    here._motion.injected = lambda call: bad if call == 10 else Control(-2.0 if call > 10 else 0.0, 0.0)
+    here._motion.injected = lambda call: bad if call == 10 else Control(2.0 if call > 10 else 0.0, 0.0)
     assert execute(here, FORWARD)[0] is Outcome.INVALID
     assert all(within_limits(command) for command in simulator(here).commands)
     assert here.scene.ego.speed < 0.1

@@ -153,6 +153,28 @@ def test_a_start_and_goals_that_are_positions_are_there_in_their_own_leg() -> No
     assert where(State("in_0/1", 1)).station == 60.0
 
 
+def test_positions_hold_where_one_place_reaches_several_goals_at_once() -> None:
+    lane = Place("in_0", ("in_0/0", "in_0/1"))
+    from_there = StateMapping(TINY, ServiceRequest(Place("12,0", ("in_0/0",), 12.0), (lane, lane)), TMPUD)
+    assert from_there(State("in_0/0", 2)).station == 12.0
+    to_there = StateMapping(TINY, ServiceRequest(lane, (Place("60,0", ("in_0/1",), 60.0), lane)), TMPUD)
+    assert to_there(State("in_0/1", 2)).station == 60.0, "being at the position is being on the lane"
+
+
+def test_a_position_is_reached_at_the_position_also_where_lanes_are_not_cut() -> None:
+    uncut = load_map("millbrook", math.inf)
+    lane = uncut.lanes["park1e_1"]
+    behind = Place("behind", ("park1e_1/0",), 30.0)
+    ask = ServiceRequest(Place("start", ("park1e_0/0",), 50.0), (behind,))
+    paths = PathPlanner(uncut, StateMapping(uncut, ask, PAPER))
+    merge = Transition(State("park1e_0/0", 0), Action.MERGELEFT, State("park1e_1/0", 1))
+    assert lane.length > 100
+    assert paths.path_length(merge) == math.inf
+    anywhere = Transition(State("park1e_0/0", 0), Action.MERGELEFT, State("park1e_1/0", 0))
+    assert paths.path_length(anywhere) < 40
+    assert paths.lanes(anywhere) == ("park1e_0", "park1e_1")
+
+
 def test_sampled_poses_are_in_the_middle_third_and_the_seed_decides_them() -> None:
     states = [State(segment, 0) for segment in TOWN.segments]
     one, same, other = (StateMapping(TOWN, anywhere(TOWN), PAPER, seed) for seed in (1, 1, 2))
