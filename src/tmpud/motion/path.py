@@ -10,11 +10,11 @@ from typing import NamedTuple
 
 from tmpud.geometry import Point
 from tmpud.motion.mapping import RoadPoint
+from tmpud.roads.moves import SHORTEST_MERGE
 from tmpud.roads.network import Lane, LaneConnection, RoadNetwork
 from tmpud.symbols import Action
 
 MERGE_LENGTH = 25.0  # [m] of road that a lane change takes where there is room
-SHORTEST_MERGE = 20.0  # [m] a car at 20 km/h can still drive it gently
 
 
 class Follow(NamedTuple):

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 
 from tmpud.motion.mapping import RoadPoint, StateMapping
-from tmpud.motion.path import MERGE_LENGTH, SHORTEST_MERGE, Change, Cross, Move, find_path
+from tmpud.motion.path import MERGE_LENGTH, Change, Cross, Move, find_path
+from tmpud.roads.moves import SHORTEST_MERGE
 from tmpud.roads.network import RoadNetwork
 from tmpud.symbols import Transition
 

@@ -9,7 +9,7 @@ from tmpud.roads.network import LaneConnection, RoadNetwork, Segment
 from tmpud.symbols import Action
 
 MERGES = (Action.MERGELEFT, Action.MERGERIGHT)
-MERGE_LENGTH = 20.0  # [m] least distance between the middles of a merge's two segments
+SHORTEST_MERGE = 20.0  # [m] of road that a car at 20 km/h needs to change lanes gently
 
 
 class Move(NamedTuple):
@@ -52,9 +52,9 @@ def _ways(connections: Iterable[LaneConnection]) -> Iterator[LaneConnection]:
 
 
 def _has_room(network: RoadNetwork, origin: Segment, target: Segment) -> bool:
-    """Whether a merge has MERGE_LENGTH: to the target's middle, or from the lane's middle to its end if uncut."""
+    """Whether a merge has SHORTEST_MERGE: to the target's middle, or from the lane's middle to its end if uncut."""
     way = target.end - origin.middle if network.uncut else target.middle - origin.middle
-    return way >= MERGE_LENGTH
+    return way >= SHORTEST_MERGE
 
 
 def reachable(network: RoadNetwork, starts: Iterable[str]) -> set[str]:
