@@ -1,6 +1,7 @@
 """SUMO in this process (libsumo): real traffic around an ego that moves by its own dynamics.
 
-SUMO speaks of the front bumper and of angles clockwise from north; both are converted here and nowhere else.
+SUMO speaks of the front bumper and of angles clockwise from north; both are converted here and
+in ``sumo_reader.py``, and nowhere else.
 """
 
 from __future__ import annotations
@@ -8,23 +9,19 @@ from __future__ import annotations
 import contextlib
 import math
 import random
-import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from tmpud.dynamics import EGO, VehicleLimits, step
 from tmpud.errors import SimulatorError
 from tmpud.geometry import Polyline, Pose
 from tmpud.roads.network import RoadNetwork
 from tmpud.scene import Control, Scene, Vehicles, VehicleState
+from tmpud.simulators.sumo_process import start
 from tmpud.simulators.sumo_reader import DT, EGO_ID, SumoReader
 from tmpud.simulators.traffic import AHEAD, SPREAD, WISHED_SPEED, Circulation
-
-if TYPE_CHECKING:
-    from types import ModuleType
 
 SENSING_RANGE = 80.0  # [m] others further away are not in the scene
 EXTEND_EVERY = 100  # steps between looks at the cars' routes
@@ -33,11 +30,6 @@ PATIENCE = 60.0  # [s] simulated
 ROOM_BEHIND, ROOM_AHEAD, ROOM_BESIDE = 15.0, 25.0, 2.5  # [m] around the place where the ego appears
 JOINT = 0.3  # [m] two lanes that meet are equally near to a point this near to their joint
 GENTLE = 2.0  # [m/s^2] braking
-OPTIONS = (
-    "--no-step-log", "--no-warnings", "--duration-log.disable", "--collision.action", "none",
-    "--collision.check-junctions", "--collision.mingap-factor", "0", "--time-to-teleport", "-1",
-    "--max-depart-delay", "-1", "--step-length", str(DT),
-)  # fmt: skip
 
 
 class SumoSimulator:
@@ -58,7 +50,7 @@ class SumoSimulator:
         self._way: list[tuple[str, Polyline]] = []  # the announced lanes
         self._lines: dict[str, Polyline | None] = {}
         places = self._circulation.places(traffic)
-        self._sumo = _start(network, seed)
+        self._sumo = start(network, seed)
         self._reader = SumoReader(self._sumo)
         with self._errors():
             self._fill(places)
@@ -245,21 +237,3 @@ class SumoSimulator:
         self._ego = ego = replace(ego, lane=lane, z=sumo.vehicle.getPosition3D(EGO_ID)[2])
         signals = {light: sumo.trafficlight.getRedYellowGreenState(light) for light in self._network.signals}
         return Scene(round(sumo.simulation.getTime(), 3), ego, self._reader.vehicles(seen, self._steps), signals)
-
-
-def _start(network: RoadNetwork, seed: int) -> ModuleType:
-    """Load the network into libsumo; what it says on import goes to stderr."""
-    with contextlib.redirect_stdout(sys.stderr):
-        try:
-            import libsumo
-        except ImportError as error:
-            raise SimulatorError(f"libsumo cannot be imported ({error}): pip install libsumo") from error
-    if not Path(network.source).is_file():
-        raise SimulatorError(f"{network.name}: SUMO needs the map's file, and {network.source!r} is none")
-    if libsumo.isLoaded():
-        raise SimulatorError("SUMO holds one simulation per process: close the other, or use a process for each")
-    try:
-        libsumo.start(["sumo", "--net-file", network.source, "--seed", str(seed % 2**31), *OPTIONS])
-    except Exception as error:  # libsumo's own class cannot be named before it is imported
-        raise SimulatorError(f"SUMO does not start on {network.source}: {error}") from error
-    return libsumo  # type: ignore[no-any-return]

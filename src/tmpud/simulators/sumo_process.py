@@ -1,0 +1,36 @@
+"""How SUMO is started in this process: which options, on which file, and what can stand in the way."""
+
+from __future__ import annotations
+
+import contextlib
+import sys
+from pathlib import Path
+from types import ModuleType
+
+from tmpud.errors import SimulatorError
+from tmpud.roads.network import RoadNetwork
+from tmpud.simulators.sumo_reader import DT
+
+OPTIONS = (
+    "--no-step-log", "--no-warnings", "--duration-log.disable", "--collision.action", "none",
+    "--collision.check-junctions", "--collision.mingap-factor", "0", "--time-to-teleport", "-1",
+    "--max-depart-delay", "-1", "--step-length", str(DT),
+)  # fmt: skip
+
+
+def start(network: RoadNetwork, seed: int) -> ModuleType:
+    """Load the network into libsumo; what it says on import goes to stderr."""
+    with contextlib.redirect_stdout(sys.stderr):
+        try:
+            import libsumo
+        except ImportError as error:
+            raise SimulatorError(f"libsumo cannot be imported ({error}): pip install libsumo") from error
+    if not Path(network.source).is_file():
+        raise SimulatorError(f"{network.name}: SUMO needs the map's file, and {network.source!r} is none")
+    if libsumo.isLoaded():
+        raise SimulatorError("SUMO holds one simulation per process: close the other, or use a process for each")
+    try:
+        libsumo.start(["sumo", "--net-file", network.source, "--seed", str(seed % 2**31), *OPTIONS])
+    except Exception as error:  # libsumo's own class cannot be named before it is imported
+        raise SimulatorError(f"SUMO does not start on {network.source}: {error}") from error
+    return libsumo  # type: ignore[no-any-return]
