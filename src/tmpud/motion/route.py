@@ -85,7 +85,6 @@ def build_route(
             gates.append(Gate(driven, network.index_of(move.connection), driven + length))
         elif isinstance(move, Change):
             crossing = driven + length / 2
-            limit.append((crossing, move.lane.speed))
         points += piece
         driven += length
         limit.append((driven, _speed_limit(move)))
@@ -94,10 +93,10 @@ def build_route(
 
 
 def _speed_limit(move: Move) -> float:
-    """Return the limit of the lane that a move ends on, inf within a junction [m/s]."""
+    """Return the limit of a move's lanes, the lower one on a lane change; inf within a junction [m/s]."""
     if isinstance(move, Cross):
         return math.inf
-    return move.target.speed if isinstance(move, Change) else move.lane.speed
+    return min(move.lane.speed, move.target.speed) if isinstance(move, Change) else move.lane.speed
 
 
 def _sampled(
