@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shlex
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NoReturn
@@ -26,6 +27,7 @@ asp_app = typer.Typer(help="Look at the task planner's program.", no_args_is_hel
 app.add_typer(map_app, name="map")
 app.add_typer(asp_app, name="asp")
 
+INTERRUPTED = 130  # exit code
 TOWN = "millbrook"
 DEMO_SEED, DEMO_TRAFFIC = 22, 200
 
@@ -92,7 +94,7 @@ def _drive(mission: Mission, folder: Path, *, as_json: bool, frames: bool = True
     from tmpud.events import Event
     from tmpud.execution.timing import Stopwatch
     from tmpud.presets import preset_named
-    from tmpud.recording import record, record_timing
+    from tmpud.recording import PICTURE, record, record_timing
     from tmpud.roads.loading import load_map
     from tmpud.runner import drive as run
     from tmpud.story import Story, summarise
@@ -106,7 +108,7 @@ def _drive(mission: Mission, folder: Path, *, as_json: bool, frames: bool = True
             for line in story.tell(event):
                 typer.echo(line)
     record_timing(watch, folder)
-    draw_run(load_map(mission.map, preset_named(mission.preset).segment_length), events, folder / "map.png")
+    draw_run(load_map(mission.map, preset_named(mission.preset).segment_length), events, folder / PICTURE)
     summary = summarise(events) | {"latency_ms": watch.summary()}
     _report(summary, folder, as_json=as_json)
     if summary["status"] != "SUCCESS":
@@ -114,12 +116,13 @@ def _drive(mission: Mission, folder: Path, *, as_json: bool, frames: bool = True
 
 
 def _report(summary: dict[str, Any], folder: Path, *, as_json: bool) -> None:
+    from tmpud.recording import LOG, PICTURE, TIMING
     from tmpud.story import closing
 
     if as_json:
         typer.echo(json.dumps(summary))
         return
-    for line in (*closing(summary), "", f"wrote {', '.join(sorted(p.name for p in folder.iterdir()))} to {folder}"):
+    for line in (*closing(summary), "", f"wrote {PICTURE}, {LOG}, {TIMING} to {folder}"):
         typer.echo(line)
 
 
@@ -190,7 +193,7 @@ def asp_dump(
 
     files = Problem.of(map_, start, goal, tuple(via or ()), seed=seed, preset=preset).dump(out)
     typer.echo(f"wrote {', '.join(file.name for file in files)} to {out}")
-    typer.echo(f"try: clingo {' '.join(str(file) for file in files)}")
+    typer.echo(f"try: {shlex.join(['python', '-m', 'clingo', *map(str, files)])}")
 
 
 def main() -> None:
@@ -199,9 +202,12 @@ def main() -> None:
     if debug:
         sys.argv.remove("--debug")
     try:
-        sys.exit(app(standalone_mode=False) or 0)
+        code = app(standalone_mode=False) or 0
+        if code == INTERRUPTED:
+            _fail("", INTERRUPTED)
+        sys.exit(code)
     except KeyboardInterrupt:
-        _fail("interrupted; what was recorded is kept", 130)
+        _fail("", INTERRUPTED)
     except Exception as error:
         if debug or not (code := _exit_code(error)):
             raise
@@ -216,7 +222,7 @@ def _exit_code(error: Exception) -> int:
     if isinstance(error, TmpudError):
         return error.exit_code
     if type(error).__name__ == "Abort":
-        return 130
+        return INTERRUPTED
     return 2 if isinstance(error, OSError) or hasattr(error, "format_message") else 0
 
 

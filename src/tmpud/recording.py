@@ -16,6 +16,7 @@ from tmpud.execution.timing import Stopwatch
 
 LOG = "run.jsonl.gz"
 TIMING = "timing.jsonl"
+PICTURE = "map.png"
 NAME = re.compile(r"[a-z0-9][a-z0-9._-]{0,63}")
 
 
@@ -28,6 +29,8 @@ def record(events: Iterator[Event], folder: Path) -> Iterator[Event]:
         raise RequestError(f"{folder.name!r} is no name for a run: small letters, digits, '.', '_' and '-', at most 64")
     first = list(islice(events, 1))
     folder.mkdir(parents=True, exist_ok=True)
+    for stale in (TIMING, PICTURE):  # of an earlier run: they do not belong to this log
+        (folder / stale).unlink(missing_ok=True)
     with (folder / LOG).open("wb") as raw, gzip.GzipFile("", "wb", 6, raw, mtime=0) as log:
         for event in chain(first, events):
             log.write(_line(to_json(event)))
@@ -40,9 +43,9 @@ def record_timing(stopwatch: Stopwatch, folder: Path) -> None:
     (folder / TIMING).write_bytes(b"".join(rows))
 
 
-def read_run(folder: Path) -> Iterator[Event]:
+def read_run(folder: str | Path) -> Iterator[Event]:
     """Yield a run's events; RunFileError names the line that cannot be read."""
-    path = folder / LOG
+    path = Path(folder) / LOG
     read = 0  # lines
     try:
         with gzip.open(path, "rt", encoding="utf-8") as log:
