@@ -7,8 +7,8 @@ differently from the text. ``docs/paper-to-code.md`` says where each field takes
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import Literal
+from dataclasses import dataclass, replace
+from typing import Any, Literal, get_origin, get_type_hints
 
 from tmpud.errors import RequestError
 
@@ -100,8 +100,29 @@ RELEASED = Preset(
 PRESETS = {preset.name: preset for preset in (TMPUD, PAPER, RELEASED)}
 
 
-def preset_named(name: str) -> Preset:
-    """Return a preset by its name; RequestError for a name that none has."""
+def preset_named(text: str) -> Preset:
+    """Return a preset by its name, or a changed one such as ``tmpud:gamma=1500,turning_range=-0.2/0.2,horizon=none``.
+
+    Raises RequestError for a name, field or value that there is not.
+    """
+    name, _, changes = text.partition(":")
     if name not in PRESETS:
         raise RequestError(f"no preset is called {name!r}; there are {', '.join(PRESETS)}")
-    return PRESETS[name]
+    if not changes:
+        return PRESETS[name]
+    return replace(PRESETS[name], name=text, **dict(_change(text, change) for change in changes.split(",")))
+
+
+def _change(preset: str, change: str) -> tuple[str, Any]:
+    """Return the field and the value that ``field=value`` stands for."""
+    from pydantic import TypeAdapter, ValidationError  # takes a while; only changed presets need it
+
+    field, _, text = (part.strip() for part in change.partition("="))
+    kinds = get_type_hints(Preset)
+    if field == "name" or field not in kinds:
+        raise RequestError(f"preset {preset!r}: {field!r} is no field; there are {', '.join(list(kinds)[1:])}")
+    value = tuple(text.split("/")) if get_origin(kinds[field]) is tuple else None if text == "none" else text
+    try:
+        return field, TypeAdapter(kinds[field]).validate_python(value)
+    except ValidationError as error:
+        raise RequestError(f"preset {preset!r}: {change}: {error.errors()[0]['msg']}") from error

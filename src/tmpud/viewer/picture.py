@@ -17,7 +17,7 @@ from tmpud.geometry import Point, Polyline, Pose
 from tmpud.motion.mapping import StateMapping
 from tmpud.motion.path import outline
 from tmpud.motion.path_planner import PathPlanner
-from tmpud.presets import PRESETS
+from tmpud.presets import preset_named
 from tmpud.roads.network import RoadNetwork
 from tmpud.story import plan_name
 from tmpud.symbols import Place, ServiceRequest, State, TaskPlan
@@ -91,7 +91,7 @@ def _mapping(network: RoadNetwork, header: Header) -> StateMapping:
     mission = header.mission
     words = mission["request"]
     request = ServiceRequest(_place(words["start"]), tuple(_place(goal) for goal in words["goals"]))
-    return StateMapping(network, request, PRESETS[mission["preset"]], mission["seed"])
+    return StateMapping(network, request, preset_named(mission["preset"]), mission["seed"])
 
 
 def _place(words: Any) -> Place:

@@ -1,0 +1,58 @@
+"""The command line. Every command imports what it needs when it runs, so that ``--help`` is quick."""
+
+from __future__ import annotations
+
+import sys
+from typing import NoReturn
+
+import typer
+
+from tmpud.cli import driving, planning
+from tmpud.errors import TmpudError
+
+app = typer.Typer(
+    help="Safe and efficient urban driving by task-motion planning (TMPUD).",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+)
+for part in (driving, planning):
+    app.add_typer(part.app)
+
+INTERRUPTED = 130  # exit code
+
+
+def main() -> None:
+    """Run the command line; a user's error is one line on stderr."""
+    debug = "--debug" in sys.argv
+    if debug:
+        sys.argv.remove("--debug")
+    try:
+        code = app(standalone_mode=False) or 0
+        if code == INTERRUPTED:
+            _fail("", INTERRUPTED)
+        sys.exit(code)
+    except KeyboardInterrupt:
+        _fail("", INTERRUPTED)
+    except Exception as error:
+        if debug or not (code := _exit_code(error)):
+            raise
+        if type(error).__name__ == "NoArgsIsHelpError":
+            error.show()  # type: ignore[attr-defined]
+            sys.exit(code)
+        _fail(error.format_message() if hasattr(error, "format_message") else str(error), code)
+
+
+def _exit_code(error: Exception) -> int:
+    """Return the exit code for an error of the user's, 0 for any other."""
+    if isinstance(error, TmpudError):
+        return error.exit_code
+    if type(error).__name__ == "Abort":
+        return INTERRUPTED
+    return 2 if isinstance(error, OSError) or hasattr(error, "format_message") else 0
+
+
+def _fail(message: str, code: int) -> NoReturn:
+    typer.echo(f"tmpud: {message or 'interrupted; what was recorded is kept'}", err=True)
+    sys.exit(code)

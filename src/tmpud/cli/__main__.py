@@ -1,0 +1,5 @@
+"""``python -m tmpud.cli``."""
+
+from tmpud.cli import main
+
+main()

@@ -1,0 +1,98 @@
+"""Drive one mission: ``demo`` and ``drive``."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from tmpud.cli.options import TOWN, Algorithm, Beta, From, Json, Map, Out, PresetName, Seed, To, Traffic, Via
+
+if TYPE_CHECKING:
+    from tmpud.runner import Mission
+
+app = typer.Typer()
+
+DEMO_SEED, DEMO_TRAFFIC = 22, 200
+
+
+@app.command()
+def demo(seed: Seed = DEMO_SEED, out: Out = None) -> None:
+    """Drive the shipped town's paper mission in traffic and tell the story."""
+    from tmpud.roads.towns import PAPER_MISSIONS
+    from tmpud.runner import Mission
+
+    paper = PAPER_MISSIONS[TOWN]
+    mission = Mission(map=TOWN, start=paper.start, goal=paper.goal, seed=seed, traffic=DEMO_TRAFFIC)
+    _drive(mission, out or Path("runs/demo"), as_json=False)
+
+
+@app.command()
+def drive(
+    start: From,
+    goal: To,
+    map_: Map = TOWN,
+    via: Via = None,
+    algorithm: Algorithm = "tmpud",
+    beta: Beta = 0.3,
+    traffic: Traffic = 120,
+    seed: Seed = 7,
+    preset: PresetName = "tmpud",
+    out: Out = None,
+    frames: Annotated[bool, typer.Option(help="Record what can be seen, ten times a second.")] = True,
+    as_json: Json = False,
+) -> None:
+    """Drive a service request in SUMO's traffic, judge it, and write a run folder."""
+    from tmpud.runner import Mission
+
+    mission = Mission(
+        map=map_,
+        start=start,
+        goal=goal,
+        via=tuple(via or ()),
+        algorithm=algorithm,
+        beta=beta,
+        traffic=traffic,
+        seed=seed,
+        preset=preset,
+    )
+    name = f"{Path(map_).name.split('.')[0]}-{preset}-{algorithm}-{seed}".lower()
+    _drive(mission, out or Path("runs") / name, as_json=as_json, frames=frames)
+
+
+def _drive(mission: Mission, folder: Path, *, as_json: bool, frames: bool = True) -> None:
+    from tmpud.events import Event
+    from tmpud.execution.timing import Stopwatch
+    from tmpud.presets import preset_named
+    from tmpud.recording import PICTURE, record, record_timing
+    from tmpud.roads.loading import load_map
+    from tmpud.runner import drive as run
+    from tmpud.story import Story, summarise
+    from tmpud.viewer.picture import draw_run
+
+    watch, story = Stopwatch(), Story()
+    events: list[Event] = []
+    for event in record(run(mission, stopwatch=watch, frames=frames), folder):
+        events.append(event)
+        if not as_json:
+            for line in story.tell(event):
+                typer.echo(line)
+    record_timing(watch, folder)
+    draw_run(load_map(mission.map, preset_named(mission.preset).segment_length), events, folder / PICTURE)
+    summary = summarise(events) | {"latency_ms": watch.summary()}
+    _report(summary, folder, as_json=as_json)
+    if summary["status"] != "SUCCESS":
+        raise typer.Exit(1)
+
+
+def _report(summary: dict[str, Any], folder: Path, *, as_json: bool) -> None:
+    from tmpud.recording import LOG, PICTURE, TIMING
+    from tmpud.story import closing
+
+    if as_json:
+        typer.echo(json.dumps(summary))
+        return
+    for line in (*closing(summary), "", f"wrote {PICTURE}, {LOG}, {TIMING} to {folder}"):
+        typer.echo(line)
