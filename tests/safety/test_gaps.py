@@ -103,6 +103,8 @@ def test_the_safe_distance_is_that_of_the_ad_rss_library() -> None:
     for _ in range(300):
         rear, front = rng.uniform(0, 30, size=2)
         least = rng.uniform(1, 6)
-        rss = RssParameters(rng.uniform(0.1, 3), rng.uniform(0.1, 3), least, least + rng.uniform(0, 6), rng.uniform(0, 3))
+        rss = RssParameters(
+            rng.uniform(0.1, 3), rng.uniform(0.1, 3), least, least + rng.uniform(0, 6), rng.uniform(0, 3)
+        )
         ours = float(safe_distance(np.array([rear]), np.array([front]), rss)[0])
         assert ours == pytest.approx(oracle.safe_distance(rear, front, rss), abs=1e-9)
