@@ -1,7 +1,10 @@
+import json
+
 import pytest
 
 from tmpud.errors import TmpudError
-from tmpud.experiments.grid import ALGORITHMS, Grid, Route, cells, rows
+from tmpud.experiments.grid import Grid, Route, cells, rows
+from tmpud.experiments.paper_numbers import ALGORITHMS
 from tmpud.experiments.tasks import DONE, Record
 from tmpud.roads.loading import load_map
 from tmpud.roads.places import request
@@ -72,3 +75,8 @@ def test_what_cannot_be_run_is_refused_before_anything_runs(grid: Grid, said: st
     with pytest.raises(TmpudError) as caught:
         cells(grid)
     assert said in str(caught.value)
+
+
+def test_a_grid_outlasts_its_way_through_json() -> None:
+    grid = Grid(missions=("paper", Route("park1e_0", "high4n", ("mill4n",))), traffic={"light": 40}, seeds=(1, 2))
+    assert Grid.from_json(json.loads(json.dumps(grid.to_json()))) == grid

@@ -7,8 +7,9 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any, NamedTuple
 
+from tmpud.errors import SimulatorError
 from tmpud.events import Estimated, Event, Executed, Finished, Judged, Refused
-from tmpud.experiments.tasks import Json
+from tmpud.experiments.tasks import SIM_CRASH, Json
 from tmpud.judging.rules import Kind
 from tmpud.presets import preset_named
 from tmpud.protocols import Simulator
@@ -39,7 +40,10 @@ class FullTrials:
     def run(self, prepared: Town, arguments: Json) -> Json:
         """Drive one trial with the algorithm and preset of the arguments."""
         mission = replace(prepared.mission, **arguments)
-        return summary(drive(mission, simulator=lambda *_: prepared.simulator, frames=False))
+        result = summary(drive(mission, simulator=lambda *_: prepared.simulator, frames=False))
+        if result["status"] == SIM_CRASH:
+            raise SimulatorError(result["message"])
+        return result
 
 
 def summary(events: Iterable[Event]) -> dict[str, Any]:
@@ -71,6 +75,7 @@ def summary(events: Iterable[Event]) -> dict[str, Any]:
         "travel_time": round(end.travel_time, 3),
         "unsafe": bool(collisions["merge"] or stops),
         "collisions": {name: n for name, n in sorted(collisions.items()) if n},
+        "merge_collisions": collisions["merge"],
         "forced_stops": stops,
         "hard_brakings": kinds[Kind.HARD_BRAKING],
         "violations": int(end.metrics["violations"]),

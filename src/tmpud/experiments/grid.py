@@ -10,6 +10,7 @@ from itertools import product
 from typing import Any, NamedTuple
 
 from tmpud.errors import RequestError
+from tmpud.experiments.paper_numbers import ALGORITHMS
 from tmpud.experiments.rows import TrialRow
 from tmpud.experiments.tasks import DONE, Record, Task
 from tmpud.presets import preset_named
@@ -19,7 +20,6 @@ from tmpud.roads.places import RANDOM, request
 from tmpud.roads.towns import PAPER_MISSIONS
 from tmpud.symbols import Place
 
-ALGORITHMS = ("tmpud", "threshold(0.5)", "threshold(0.3)", "threshold(0.1)", "no-com")
 _ALGORITHM = re.compile(r"(tmpud|no-com)|threshold\((0|1|0?\.\d+|[01]\.\d+)\)")
 _RANDOM = re.compile(r"random:([1-9]\d{0,4})")
 
@@ -43,8 +43,15 @@ class Grid:
     presets: tuple[str, ...] = ("tmpud",)
     seeds: tuple[int, ...] = tuple(range(200))
 
-    def as_json(self) -> dict[str, Any]:
+    def to_json(self) -> dict[str, Any]:
         return asdict(self)
+
+    @classmethod
+    def from_json(cls, row: Mapping[str, Any]) -> Grid:
+        """Return the grid that ``to_json`` described."""
+        routes = (m if isinstance(m, str) else Route(m[0], m[1], tuple(m[2])) for m in row["missions"])
+        lists = {name: tuple(row[name]) for name in ("maps", "algorithms", "presets", "seeds")}
+        return cls(missions=tuple(routes), traffic=dict(row["traffic"]), **lists)
 
 
 class Cell(NamedTuple):

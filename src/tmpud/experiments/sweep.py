@@ -10,7 +10,8 @@ import yaml
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 
 from tmpud.errors import RequestError, TmpudError
-from tmpud.experiments.grid import ALGORITHMS, Grid, Route, cells
+from tmpud.experiments.grid import Grid, Route, cells
+from tmpud.experiments.paper_numbers import ALGORITHMS
 
 _RANGE = re.compile(r"(\d{1,9})\.\.(\d{1,9})")
 MOST_SEEDS = 100_000
