@@ -42,7 +42,7 @@ class Quick:
         time.sleep(float(arguments.get("seconds", 0.0)))
         text = f"{prepared} {arguments.get('seed')} " + "x" * int(arguments.get("size", 0))
         if answer is not None:
-            return answer  # type: ignore[no-any-return]  what is no answer is sent as one
+            return answer  # type: ignore[no-any-return]
         return {"sum": hashlib.sha256(text.encode()).hexdigest(), "text": text, "pid": None}
 
 
