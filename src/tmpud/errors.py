@@ -49,3 +49,7 @@ class RunFileError(TmpudError):
     """A run folder or event log that is damaged or of another schema."""
 
     exit_code = 4
+
+
+class FolderError(TmpudError):
+    """A results folder that is another experiment's, in use, or cannot be written."""

@@ -18,10 +18,10 @@ from tests.safety.agreement import (
 )
 from tests.task.agreement import Tally, compare
 from tmpud.dynamics import EGO
+from tmpud.experiments.progress import Progress
 from tmpud.roads.loading import load_map, map_file
 from tools.verification.figures import Figure, none_in
 from tools.verification.options import Options, map_name
-from tools.verification.progress import Progress
 
 CHUNK = 50  # cases between two lines of progress
 MOST_OFF = 0.3  # [m] RMS of the centre's distance from the map's own path

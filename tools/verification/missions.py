@@ -10,9 +10,9 @@ from pathlib import Path
 from statistics import mean, median
 from typing import Any, NamedTuple
 
+from tmpud.experiments.progress import Progress
 from tools.verification.figures import Figure, none_in
 from tools.verification.options import Options, map_name
-from tools.verification.progress import Progress
 from tools.verification.trials import TRIED, Trial, drive, each
 
 FIRST_SEED = 1000

@@ -7,13 +7,13 @@ import tempfile
 from itertools import cycle, islice
 from pathlib import Path
 
+from tmpud.experiments.progress import Progress
 from tmpud.recording import LOG
 from tmpud.roads import load_map, shipped_towns
 from tools.check_traffic import STANDING
 from tools.check_traffic import drive as circulate
 from tools.verification.figures import Figure, none_in
 from tools.verification.options import Options
-from tools.verification.progress import Progress
 from tools.verification.trials import drive, each
 
 FIRST_SEED = 2000

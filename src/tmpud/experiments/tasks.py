@@ -8,10 +8,13 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol
 
+from tmpud.errors import RequestError
+
 Json = Mapping[str, Any]  # only what JSON holds: strings, finite numbers, truth values, None, lists and mappings
 
 DONE = "DONE"  # a record's status where the task gave a result
-TOOL_FAULTS = ("SIM_CRASH", "SIM_HANG", "ERROR")  # ... and where it did not; never counted as an outcome of driving
+SIM_CRASH, SIM_HANG, ERROR = "SIM_CRASH", "SIM_HANG", "ERROR"  # ended unasked, took too long, raised
+TOOL_FAULTS = (SIM_CRASH, SIM_HANG, ERROR)  # a record's status where it did not; never an outcome of driving
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -19,7 +22,7 @@ class Task:
     """One thing to run; the same task gives the same result, whoever runs it and whatever ran before."""
 
     key: str  # unique in its experiment, such as "heavy/0017/tmpud"
-    work: str  # a name in ``WORK``
+    work: str  # a name in ``WORK``, or "module:class"
     shared: Json  # tasks of equal work and shared are run one after another on one prepared state
     arguments: Json
 
@@ -40,7 +43,10 @@ class Record:
 
 
 class Work(Protocol):
-    """What can be done with tasks; implemented by a class without arguments."""
+    """What can be done with tasks; implemented by a class without arguments, made once in a worker process.
+
+    Its ``__init__`` imports what is heavy. Where it is not isolated, ``run`` must leave what was prepared as it is.
+    """
 
     isolated: bool  # whether each task needs a process of its own, forked from the prepared one
 
@@ -56,6 +62,13 @@ class Work(Protocol):
 WORK: dict[str, str] = {  # name -> "module:class", imported where it is run
     "full": "tmpud.experiments.full:FullTrials",
 }
+
+
+def located(work: str) -> str:
+    """Return "module:class" of a work, given by its name or so; RequestError where there is none."""
+    if ":" not in work and work not in WORK:
+        raise RequestError(f"no work is called {work!r}; there are {', '.join(WORK)}")
+    return WORK.get(work, work)
 
 
 def digest(value: Any) -> str:
