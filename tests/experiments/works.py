@@ -38,11 +38,11 @@ class Quick:
         return [int(shared["town"])]
 
     def run(self, prepared: list[int], arguments: Json) -> Json:
-        answer = misbehave(str(arguments.get("how", "")), arguments)
+        answer: Json | None = misbehave(str(arguments.get("how", "")), arguments)
         time.sleep(float(arguments.get("seconds", 0.0)))
         text = f"{prepared} {arguments.get('seed')} " + "x" * int(arguments.get("size", 0))
         if answer is not None:
-            return answer  # type: ignore[no-any-return]
+            return answer
         return {"sum": hashlib.sha256(text.encode()).hexdigest(), "text": text, "pid": None}
 
 
