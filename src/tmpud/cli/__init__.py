@@ -7,7 +7,7 @@ from typing import NoReturn
 
 import typer
 
-from tmpud.cli import driving, planning
+from tmpud.cli import driving, experiments, planning
 from tmpud.errors import TmpudError
 
 app = typer.Typer(
@@ -17,7 +17,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
-for part in (driving, planning):
+for part in (driving, planning, experiments):
     app.add_typer(part.app)
 
 INTERRUPTED = 130  # exit code

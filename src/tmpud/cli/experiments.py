@@ -1,0 +1,159 @@
+"""Experiments: ``paper``, ``sweep`` and ``results``."""
+
+from __future__ import annotations
+
+import json
+import shlex
+import sys
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from tmpud.cli.options import TOWN, Json, Map
+
+if TYPE_CHECKING:
+    from tmpud.experiments.analysis import Analysis
+    from tmpud.experiments.store import Results
+    from tmpud.experiments.tasks import Task
+
+app = typer.Typer()
+paper_app = typer.Typer(help="Repeat the paper's experiments.", no_args_is_help=True)
+app.add_typer(paper_app, name="paper")
+
+Jobs = Annotated[int, typer.Option(min=1, max=256, help="Worker processes; they never change a result.")]
+Folder = Annotated[
+    Path | None,
+    typer.Option("--out", help="The folder to write, or to go on in; default: results/<name>-<digest of the options>."),
+]
+Preset = Annotated[str, typer.Option(help="tmpud, paper or released, or one changed, such as tmpud:gamma=1500.")]
+
+
+@paper_app.command()
+def table1(
+    trials: Annotated[int, typer.Option(min=1, max=100_000, help="Per algorithm and density.")] = 200,
+    map_: Map = TOWN,
+    missions: Annotated[str, typer.Option(help="paper, or random:N, over which the trials are spread.")] = "paper",
+    preset: Preset = "tmpud",
+    first_seed: Annotated[int, typer.Option(min=0, help="Seed of the first trial.")] = 1000,
+    jobs: Jobs = 2,
+    out: Folder = None,
+    as_json: Json = False,
+) -> None:
+    """Drive Table I in full simulation: five algorithms, normal and heavy traffic, paired seeds."""
+    from tmpud.experiments.grid import cells
+    from tmpud.experiments.table1 import Table1
+
+    asked = Table1(map=map_, missions=missions, trials=trials, preset=preset, first_seed=first_seed)
+    grid = asked.grid()
+    _experiment("table1", grid.to_json(), [cell.task for cell in cells(grid)], out, jobs=jobs, as_json=as_json)
+
+
+@app.command()
+def sweep(
+    file: Annotated[Path, typer.Argument(metavar="FILE.yaml", help="maps, missions, traffic, algorithms, ...")],
+    jobs: Jobs = 2,
+    out: Folder = None,
+    as_json: Json = False,
+) -> None:
+    """Drive any grid of maps, missions, densities, algorithms, presets and seeds."""
+    from tmpud.experiments.grid import cells
+    from tmpud.experiments.sweep import read_sweep
+
+    grid = read_sweep(file)
+    _experiment("sweep", grid.to_json(), [cell.task for cell in cells(grid)], out, jobs=jobs, as_json=as_json)
+
+
+@app.command()
+def results(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="A folder that an experiment wrote.")],
+    compare: Annotated[Path | None, typer.Option(metavar="DIR", help="Another run to compare it with.")] = None,
+    export: Annotated[Path | None, typer.Option(metavar="FILE", help="A .csv, .json or .parquet to write.")] = None,
+    as_json: Json = False,
+) -> None:
+    """Print an experiment's results, export its trials, or compare two runs trial by trial."""
+    from tmpud.experiments.analysis import analyse
+    from tmpud.experiments.export import write_rows
+    from tmpud.experiments.store import read_results
+
+    found = read_results(folder)
+    for damage in found.damages:
+        typer.echo(f"tmpud: {damage}", err=True)
+    analysis = analyse(found)
+    if export:
+        write_rows(analysis.rows, export)
+        typer.echo(f"wrote {len(analysis.rows)} trials to {export}", err=True)
+    if compare:
+        _compare(analysis, analyse(read_results(compare)), as_json=as_json)
+    else:
+        _tell(analysis, found, as_json=as_json)
+
+
+def _experiment(
+    name: str, options: Mapping[str, Any], tasks: Sequence[Task], out: Path | None, *, jobs: int, as_json: bool
+) -> None:
+    """Run what is left of an experiment, write its report, and say what came out."""
+    from tmpud.experiments.analysis import analyse, report
+    from tmpud.experiments.campaign import run_campaign
+    from tmpud.experiments.export import write_rows
+    from tmpud.experiments.manifest import Experiment
+    from tmpud.experiments.progress import Progress
+    from tmpud.experiments.report import write_report
+    from tmpud.experiments.store import read_results
+    from tmpud.experiments.tasks import digest
+    from tmpud.experiments.workers import Limits
+
+    folder = out or Path("results") / f"{name}-{digest(options)[:8]}"
+    typer.echo(f"{name}: {len(tasks)} tasks, {jobs} at a time, into {folder}", err=True)
+    experiment = Experiment(name=name, options=options, command=_command())
+    for _ in run_campaign(folder, experiment, tasks, limits=Limits(jobs=jobs), progress=Progress(name, len(tasks))):
+        pass
+    found = read_results(folder)
+    analysis = analyse(found)
+    write_rows(analysis.rows, folder / "trials.csv")
+    files = write_report(folder, report(analysis, found))
+    _tell(analysis, found, as_json=as_json)
+    typer.echo(f"wrote {', '.join(file.name for file in files)}, trials.csv to {folder}", err=True)
+
+
+def _command() -> str:
+    """Return the command that repeats this one, wherever its results go and however many work on it."""
+    words = iter(["tmpud", *sys.argv[1:]])
+    kept: list[str] = []
+    for word in words:
+        if word in ("--out", "--jobs"):
+            next(words, None)
+        elif word != "--json" and not word.startswith(("--out=", "--jobs=")):
+            kept.append(word)
+    return shlex.join(kept)
+
+
+def _tell(analysis: Analysis, found: Results, *, as_json: bool) -> None:
+    from tmpud.experiments.table import as_text, comparison, findings_table, verdicts
+    from tmpud.experiments.tasks import results_hash
+
+    hashed = results_hash(found.records)
+    if as_json:
+        typer.echo(json.dumps({**analysis.to_json(), "results_hash": hashed, "complete": found.complete}))
+        return
+    typer.echo(as_text(comparison(analysis.kind.title, analysis.cells, analysis.kind.reference)))
+    if analysis.findings:
+        typer.echo("\n" + as_text(findings_table(analysis.findings)))
+    _lines(("", *verdicts(analysis.findings), "", f"results {hashed}, {len(found.records)} tasks done"))
+
+
+def _compare(first: Analysis, second: Analysis, *, as_json: bool) -> None:
+    from tmpud.experiments.comparison import compare_runs
+    from tmpud.experiments.table import as_text
+
+    table = compare_runs(first.rows, second.rows)
+    if as_json:
+        typer.echo(json.dumps([dict(zip(table.columns, row, strict=True)) for row in table.rows]))
+    else:
+        typer.echo(as_text(table))
+
+
+def _lines(lines: Iterable[str]) -> None:
+    for line in lines:
+        typer.echo(line)
