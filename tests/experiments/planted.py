@@ -41,7 +41,7 @@ def planted(
                     status="COLLISION" if hit and rng.uniform() < 0.5 else "SUCCESS",
                     distance=shared + rng.exponential(longer) if longer else shared,
                     unsafe=hit,
-                    details={"merge_collisions": int(hit), "forced_stops": 0},
+                    details={"collisions": {"merge": 1} if hit else {}, "forced_stops": 0},
                 )
             )
     return rows

@@ -16,9 +16,9 @@ def found(rows: list[TrialRow]) -> dict[str, Cell]:
 
 
 ROWS = [
-    row("a", 0, distance=100.0, details={"merge_collisions": 0, "forced_stops": 0}),
+    row("a", 0, distance=100.0, details={"collisions": {"crossing": 1}, "forced_stops": 0}),
     row("b", 0, distance=120.0),
-    row("a", 1, distance=200.0, unsafe=True, details={"merge_collisions": 0, "forced_stops": 2}),
+    row("a", 1, distance=200.0, unsafe=True, details={"collisions": {}, "forced_stops": 2}),
     row("b", 1, distance=50.0, status="COLLISION", unsafe=True),
     row("a", 2, distance=7.0, status="SIM_HANG", unsafe=True, details={"forced_stops": 1}),
     row("b", 2, distance=140.0),
@@ -39,7 +39,7 @@ def test_distances_are_over_the_trials_in_which_all_arrived_with_own_arrivals_be
 
 def test_two_stops_in_a_trial_are_two_events_and_one_unsafe_trial() -> None:
     both = found(ROWS)
-    assert both["a"].events == {"merge_collisions": 0, "forced_stops": 2}
+    assert both["a"].events == {"merge collisions": 0, "crossing collisions": 1, "forced stops": 2}
     assert both["b"].events == {}  # its rows tell of none
 
 

@@ -65,6 +65,16 @@ def test_the_bootstraps_spread_is_the_standard_error() -> None:
     np.testing.assert_allclose(means.mean(axis=0), samples.mean(axis=0), atol=0.003)
 
 
+def test_counting_kinds_of_trials_is_the_same_as_drawing_trials() -> None:
+    rng = np.random.default_rng(14)
+    few = rng.choice([-1.0, 0.0, 1.0, 5.0], size=(400, 1), p=[0.1, 0.6, 0.2, 0.1])
+    nearly = few + rng.uniform(-1e-6, 1e-6, size=few.shape)  # no two are equal: each trial is drawn
+    by_kind, by_trial = (resampled_means(samples, rng) for samples in (few, nearly))
+    quantiles = np.linspace(0.02, 0.98, 13)
+    np.testing.assert_allclose(np.quantile(by_kind, quantiles), np.quantile(by_trial, quantiles), atol=0.02)
+    assert np.std(by_kind) == pytest.approx(few.std() / 20, rel=0.05)
+
+
 def test_what_is_paired_stays_paired_in_every_resample() -> None:
     samples = np.random.default_rng(5).normal(size=(50, 1))
     means = resampled_means(np.hstack([samples, 3 - 2 * samples]), np.random.default_rng(6))

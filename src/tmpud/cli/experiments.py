@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import shlex
 import sys
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -14,8 +14,7 @@ import typer
 from tmpud.cli.options import TOWN, Json, Map
 
 if TYPE_CHECKING:
-    from tmpud.experiments.analysis import Analysis
-    from tmpud.experiments.store import Results
+    from tmpud.experiments.kinds import Findings
     from tmpud.experiments.tasks import Task
 
 app = typer.Typer()
@@ -73,30 +72,29 @@ def results(
     as_json: Json = False,
 ) -> None:
     """Print an experiment's results, export its trials, or compare two runs trial by trial."""
-    from tmpud.experiments.analysis import analyse
     from tmpud.experiments.export import write_rows
+    from tmpud.experiments.kinds import findings
     from tmpud.experiments.store import read_results
 
-    found = read_results(folder)
-    for damage in found.damages:
+    found = findings(read_results(folder))
+    for damage in found.results.damages:
         typer.echo(f"tmpud: {damage}", err=True)
-    analysis = analyse(found)
     if export:
-        write_rows(analysis.rows, export)
-        typer.echo(f"wrote {len(analysis.rows)} trials to {export}", err=True)
+        write_rows(found.rows, export)
+        typer.echo(f"wrote {len(found.rows)} trials to {export}", err=True)
     if compare:
-        _compare(analysis, analyse(read_results(compare)), as_json=as_json)
+        _compare(found, findings(read_results(compare)), as_json=as_json)
     else:
-        _tell(analysis, found, as_json=as_json)
+        _tell(found, as_json=as_json)
 
 
 def _experiment(
     name: str, options: Mapping[str, Any], tasks: Sequence[Task], out: Path | None, *, jobs: int, as_json: bool
 ) -> None:
     """Run what is left of an experiment, write its report, and say what came out."""
-    from tmpud.experiments.analysis import analyse, report
     from tmpud.experiments.campaign import run_campaign
     from tmpud.experiments.export import write_rows
+    from tmpud.experiments.kinds import findings
     from tmpud.experiments.manifest import Experiment
     from tmpud.experiments.progress import Progress
     from tmpud.experiments.report import write_report
@@ -109,11 +107,10 @@ def _experiment(
     experiment = Experiment(name=name, options=options, command=_command())
     for _ in run_campaign(folder, experiment, tasks, limits=Limits(jobs=jobs), progress=Progress(name, len(tasks))):
         pass
-    found = read_results(folder)
-    analysis = analyse(found)
-    write_rows(analysis.rows, folder / "trials.csv")
-    files = write_report(folder, report(analysis, found))
-    _tell(analysis, found, as_json=as_json)
+    found = findings(read_results(folder))
+    write_rows(found.rows, folder / "trials.csv")
+    files = write_report(folder, found.report())
+    _tell(found, as_json=as_json)
     typer.echo(f"wrote {', '.join(file.name for file in files)}, trials.csv to {folder}", err=True)
 
 
@@ -129,21 +126,26 @@ def _command() -> str:
     return shlex.join(kept)
 
 
-def _tell(analysis: Analysis, found: Results, *, as_json: bool) -> None:
-    from tmpud.experiments.table import as_text, comparison, findings_table, verdicts
-    from tmpud.experiments.tasks import results_hash
+def _tell(found: Findings, *, as_json: bool) -> None:
+    from tmpud.experiments.table import as_text, findings_table, verdicts
 
-    hashed = results_hash(found.records)
     if as_json:
-        typer.echo(json.dumps({**analysis.to_json(), "results_hash": hashed, "complete": found.complete}))
+        typer.echo(json.dumps(found.to_json()))
         return
-    typer.echo(as_text(comparison(analysis.kind.title, analysis.cells, analysis.kind.reference)))
+    analysis = found.analysis
+    typer.echo(as_text(analysis.table(found.kind.title)))
     if analysis.findings:
         typer.echo("\n" + as_text(findings_table(analysis.findings)))
-    _lines(("", *verdicts(analysis.findings), "", f"results {hashed}, {len(found.records)} tasks done"))
+    for line in (
+        "",
+        *verdicts(analysis.findings),
+        "",
+        f"results {found.hash}, {len(found.results.records)} tasks done",
+    ):
+        typer.echo(line)
 
 
-def _compare(first: Analysis, second: Analysis, *, as_json: bool) -> None:
+def _compare(first: Findings, second: Findings, *, as_json: bool) -> None:
     from tmpud.experiments.comparison import compare_runs
     from tmpud.experiments.table import as_text
 
@@ -152,8 +154,3 @@ def _compare(first: Analysis, second: Analysis, *, as_json: bool) -> None:
         typer.echo(json.dumps([dict(zip(table.columns, row, strict=True)) for row in table.rows]))
     else:
         typer.echo(as_text(table))
-
-
-def _lines(lines: Iterable[str]) -> None:
-    for line in lines:
-        typer.echo(line)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -14,8 +15,6 @@ from tmpud.experiments.rows import TrialRow
 from tmpud.experiments.statistics import RESAMPLES, Estimate, mean_estimates, wilson
 from tmpud.experiments.tasks import TOOL_FAULTS
 
-EVENTS = ("merge_collisions", "forced_stops")  # the keys of a row's details that are counted beside the unsafe trials
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Cell:
@@ -27,7 +26,7 @@ class Cell:
     faults: int  # of these, tool faults
     unsafe: int  # trials with at least one unsafe behaviour
     per_1000: Estimate  # unsafe trials per 1,000, Wilson's interval
-    events: Mapping[str, int]  # unsafe behaviours by kind, several in one trial counted apart
+    events: Mapping[str, int]  # collisions by class and forced stops, several in one trial counted apart
     distance: Estimate  # [m] mean over the trials in which all compared algorithms arrived, BCa interval
     arrived: int  # trials in which this algorithm did
     own_distance: float  # [m] mean over these; NaN where there are none
@@ -75,12 +74,16 @@ def _cell(condition: str, algorithm: str, rows: Sequence[TrialRow], distance: Es
         events=_events(counted),
         distance=distance,
         arrived=len(arrived),
-        own_distance=float(np.mean(arrived)) if arrived else float("nan"),
+        own_distance=math.fsum(arrived) / len(arrived) if arrived else math.nan,  # whatever the order of the rows
         statuses=dict(sorted(Counter(row.status for row in rows).items())),
     )
 
 
 def _events(rows: Sequence[TrialRow]) -> dict[str, int]:
-    """Count the kinds of events that the rows tell of."""
-    told = [kind for kind in EVENTS if any(kind in row.details for row in rows)]
-    return {kind: sum(int(row.details.get(kind, 0)) for row in rows) for kind in told}
+    """Count what the rows' details tell of: unsafe are collisions of merges and forced stops, other classes are not."""
+    told = [row.details for row in rows if "forced_stops" in row.details]
+    collisions = Counter({"merge": 0})
+    for details in told:
+        collisions.update(details.get("collisions", {}))
+    stops = sum(details["forced_stops"] for details in told)
+    return {**{f"{name} collisions": n for name, n in collisions.items()}, "forced stops": stops} if told else {}

@@ -131,7 +131,7 @@ def without_repeats(rows: Iterable[tuple[str, ...]]) -> list[tuple[str, ...]]:
 
 
 def _counts(events: Mapping[str, int]) -> str:
-    return ", ".join(f"{n} {kind.replace('_', ' ')}" for kind, n in events.items()) or NOTHING
+    return ", ".join(f"{n} {kind}" for kind, n in events.items()) or NOTHING
 
 
 def _arrived(cell: Cell) -> str:

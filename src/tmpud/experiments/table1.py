@@ -40,9 +40,7 @@ class Table1:
 DEVIATIONS = (
     "SUMO drives the traffic instead of CARLA; the ego moves by a kinematic bicycle model at 20 km/h.",
     "The town is our own, made after the paper's example figure; the paper does not publish its map's missions.",
-    "The paper gives no value of gamma, D, alpha, the control ranges or the horizon: the preset does, with the "
-    "grounds in docs/experiments.md.",
+    "The paper gives no gamma, D, alpha, control ranges or horizon: the preset does; grounds in docs/experiments.md.",
     "All five algorithms of a trial meet the same traffic, up to the moment at which they act differently.",
-    "A distance counts where all compared algorithms arrived; the paper does not say what it does with trials "
-    "that end in a collision.",
+    "A distance counts where all compared algorithms arrived; what the paper does after a collision it does not say.",
 )

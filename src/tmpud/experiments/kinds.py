@@ -1,0 +1,104 @@
+"""The kinds of experiments: how the records in a results folder become trials, and trials a report."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from tmpud.errors import RunFileError
+from tmpud.experiments.analysis import Analysis, analyse, report
+from tmpud.experiments.grid import Grid
+from tmpud.experiments.grid import rows as grid_rows
+from tmpud.experiments.paper_numbers import TABLE1, Reference
+from tmpud.experiments.report import Picture, Report
+from tmpud.experiments.rows import TrialRow
+from tmpud.experiments.store import Results
+from tmpud.experiments.table1 import DEVIATIONS as TABLE1_DEVIATIONS
+from tmpud.experiments.tasks import Record, results_hash
+
+RESAMPLING_SEED = 1
+Rows = Callable[[Mapping[str, Any], Iterable[Record]], Iterable[TrialRow]]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Kind:
+    """What tells one kind of experiment from another once its tasks are done."""
+
+    title: str
+    rows: Rows  # of the manifest's options and the records
+    reference: Reference
+    batches: bool = False  # whether bars show the spread over batches, as in the paper's figure
+    deviations: tuple[str, ...] = ()
+
+
+def _of_grid(options: Mapping[str, Any], records: Iterable[Record]) -> Iterable[TrialRow]:
+    return grid_rows(Grid.from_json(options), records)
+
+
+KINDS = {
+    "table1": Kind(title="Full simulation: Table I", rows=_of_grid, reference=TABLE1, deviations=TABLE1_DEVIATIONS),
+    "sweep": Kind(title="A sweep in full simulation", rows=_of_grid, reference={}),
+}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Findings:
+    """All that a results folder says."""
+
+    kind: Kind
+    results: Results
+    rows: tuple[TrialRow, ...]
+    analysis: Analysis
+
+    @property
+    def hash(self) -> str:
+        return results_hash(self.results.records)
+
+    def to_json(self) -> dict[str, Any]:
+        done = {"results_hash": self.hash, "done": len(self.results.records), "complete": self.results.complete}
+        return {**done, **self.analysis.to_json()}
+
+    def report(self) -> Report:
+        """Return the report; nothing of it depends on when it is written."""
+        manifest = self.results.manifest
+        return report(
+            self.analysis,
+            title=self.kind.title,
+            command=manifest["command"],
+            run=self._run(),
+            pictures=(self.picture(),),
+            deviations=self.kind.deviations,
+        )
+
+    def picture(self) -> Picture:
+        """Draw mean distance against unsafe trials, a panel per condition."""
+        from tmpud.experiments.charts import batch_panels, draw, interval_panels
+
+        panels = batch_panels(self.analysis.pairs) if self.kind.batches else interval_panels(self.analysis.cells)
+        bars = "one standard deviation over the batches" if self.kind.batches else "95 % intervals"
+        return draw(panels, self.kind.reference, "figure", f"Distance against unsafe trials; bars: {bars}.")
+
+    def _run(self) -> dict[str, str]:
+        manifest = self.results.manifest
+        tasks = manifest["tasks"]
+        return {
+            "begun": manifest["begun"],
+            **{name: str(value) for name, value in manifest["options"].items()},
+            "versions": ", ".join(f"{name} {version}" for name, version in manifest["versions"].items()),
+            "code": manifest["code"],
+            "tasks": f"{len(self.results.records)} of {tasks['count']} done (digest {tasks['digest']})",
+            "results": self.hash,
+        }
+
+
+def findings(results: Results) -> Findings:
+    """Return what a results folder says; RunFileError where its experiment is not one of trials."""
+    name = results.manifest["experiment"]
+    if name not in KINDS:
+        raise RunFileError(f"{name!r} is no experiment of trials; these are {', '.join(KINDS)}")
+    rows = tuple(KINDS[name].rows(results.manifest["options"], results.records))
+    analysis = analyse(rows, KINDS[name].reference, np.random.default_rng(RESAMPLING_SEED))
+    return Findings(kind=KINDS[name], results=results, rows=rows, analysis=analysis)
