@@ -29,10 +29,26 @@ def wrap_angle(angle: float) -> float:
     return wrapped - math.tau if wrapped > math.pi else wrapped
 
 
+class _Piece(NamedTuple):
+    """One straight piece of a polyline."""
+
+    x: float  # [m] where it begins
+    y: float
+    ex: float  # its direction, a unit vector
+    ey: float
+    begin: float  # [m] station
+    length: float  # [m]
+
+    @classmethod
+    def between(cls, start: Point, begin: float, end: Point, arrive: float) -> _Piece:
+        length = arrive - begin
+        return cls(*start, (end[0] - start[0]) / length, (end[1] - start[1]) / length, begin, length)
+
+
 class Polyline:
     """A curve through two or more points, measured by its station (arc length from the start) [m]."""
 
-    __slots__ = ("points", "stations")
+    __slots__ = ("_pieces", "points", "stations")
 
     def __init__(self, points: Iterable[Point]) -> None:
         """Join the points in their order; a point equal to the one before it is dropped.
@@ -51,6 +67,7 @@ class Polyline:
             raise ValueError("a polyline needs two distinct points")
         self.points: Sequence[Point] = tuple(kept)
         self.stations: Sequence[float] = tuple(stations)
+        self._pieces = [_Piece.between(*piece) for piece in zip(kept, stations, kept[1:], stations[1:], strict=False)]
 
     @property
     def length(self) -> float:
@@ -62,31 +79,26 @@ class Polyline:
 
     def pose_at(self, station: float, offset: float = 0.0) -> Pose:
         """Return the pose at a station, ``offset`` metres to its left; beyond the ends the end pieces go on."""
-        i = self._piece(station)
-        (x0, y0), (x1, y1) = self.points[i], self.points[i + 1]
-        length = self.stations[i + 1] - self.stations[i]
-        ex, ey = (x1 - x0) / length, (y1 - y0) / length
-        along = station - self.stations[i]
-        return Pose(x0 + along * ex - offset * ey, y0 + along * ey + offset * ex, math.atan2(ey, ex))
+        x, y, ex, ey, begin, _ = self._pieces[self._piece(station)]
+        along = station - begin
+        return Pose(x + along * ex - offset * ey, y + along * ey + offset * ex, math.atan2(ey, ex))
 
     def project(self, x: float, y: float, after: float = 0.0, before: float = math.inf) -> tuple[float, float]:
         """Return (station, signed offset to the left) of the curve's point nearest to (x, y) [m].
 
         Only pieces that touch the stations ``after`` to ``before`` are looked at.
         """
-        best = (math.inf, 0.0, 0.0)
-        last = len(self.points) - 2 if before >= self.length else self._piece(before)
-        for i in range(self._piece(after), last + 1):
-            (x0, y0), (x1, y1) = self.points[i], self.points[i + 1]
-            length = self.stations[i + 1] - self.stations[i]
-            ex, ey = (x1 - x0) / length, (y1 - y0) / length
-            along = min(max((x - x0) * ex + (y - y0) * ey, 0.0), length)
-            dx, dy = x - x0 - along * ex, y - y0 - along * ey
-            distance = math.hypot(dx, dy)
-            if distance < best[0]:
-                side = ex * dy - ey * dx
-                best = (distance, self.stations[i] + along, math.copysign(distance, side))
-        return best[1], best[2]
+        nearest, found = math.inf, (0.0, 0.0)  # (squared distance [m^2], station and side)
+        last = len(self._pieces) - 1 if before >= self.length else self._piece(before)
+        for x0, y0, ex, ey, begin, length in self._pieces[self._piece(after) : last + 1]:
+            dx, dy = x - x0, y - y0
+            along = dx * ex + dy * ey
+            along = 0.0 if along < 0.0 else length if along > length else along
+            dx, dy = dx - along * ex, dy - along * ey
+            squared = dx * dx + dy * dy
+            if squared < nearest:
+                nearest, found = squared, (begin + along, ex * dy - ey * dx)
+        return found[0], math.copysign(math.sqrt(nearest), found[1])
 
     def between(self, start: float, end: float) -> Polyline:
         """Return the part from one station to another; ValueError where it has no length."""

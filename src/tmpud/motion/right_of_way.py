@@ -22,6 +22,8 @@ LATE_BRAKING = 3.0  # [m/s^2] where more is needed to stop for yellow, the ego g
 IMPATIENCE = 120.0  # [s] after which the ego enters on any green
 PATIENCE = 4.0  # [s] after which standing vehicles are taken to be waiting for the ego
 
+ByLane = dict[str, list[int]]  # lane -> which of the others are on it
+
 
 class Shared(NamedTuple):
     """Where two paths through a junction share a place: stations on the own and on the other path [m]."""
@@ -57,7 +59,7 @@ class RightOfWay:
         yields = () if letter == "G" else connection.yields_to
         by_lane = _by_lane(scene.others)
         return not any(
-            self._inside(scene, index, foe, goes_first=foe in connection.yields_to)
+            self._inside(scene, index, foe, by_lane, goes_first=foe in connection.yields_to)
             or (foe in yields and self._arriving(scene, index, foe, by_lane, distance, standing))
             for foe in connection.foes
         )
@@ -80,6 +82,7 @@ class RightOfWay:
         it before the ego, goes first, whatever the signs say: not all others wait for those who are still crossing.
         """
         own = self._network.connections[index]
+        by_lane = _by_lane(scene.others)
         room = math.inf
         for other in self._same_junction(own):
             connection = self._network.connections[other]
@@ -88,7 +91,7 @@ class RightOfWay:
             to_place = shared.enter - front
             if to_place > 0.5:
                 own_arrival = _time_to_cover(to_place, scene.ego.speed)
-                if any(_is_first(*car, shared, own_arrival) for car in self._crossing(scene, connection)):
+                if any(_is_first(*car, shared, own_arrival) for car in self._crossing(scene, connection, by_lane)):
                     room = min(room, to_place)
         return room
 
@@ -98,11 +101,13 @@ class RightOfWay:
                 self._junctions[connection.junction].append(index)
         return self._junctions[own.junction]
 
-    def _crossing(self, scene: Scene, connection: LaneConnection) -> Iterator[tuple[float, float, float]]:
+    def _crossing(
+        self, scene: Scene, connection: LaneConnection, by_lane: ByLane
+    ) -> Iterator[tuple[float, float, float]]:
         """Yield rear and front station on the connection's path [m] and speed [m/s] of those who drive through it."""
         others = scene.others
-        for i, lane in enumerate(others.lanes):
-            if lane in connection.internal_lanes:
+        for lane in connection.internal_lanes:
+            for i in by_lane.get(lane, ()):
                 station = connection.path.project(float(others.x[i]), float(others.y[i]))[0]
                 half = float(others.length[i]) / 2
                 yield station - half, station + half, float(others.speed[i])
@@ -111,12 +116,12 @@ class RightOfWay:
         """Return the state of the connection's light, "O" (off) where it has none."""
         return scene.signals[connection.signal][connection.link] if connection.signal else "O"
 
-    def _inside(self, scene: Scene, index: int, foe: int, *, goes_first: bool) -> bool:
+    def _inside(self, scene: Scene, index: int, foe: int, by_lane: ByLane, *, goes_first: bool) -> bool:
         """Whether a vehicle on a foe's path through the junction will be in the way."""
         shared = self.shared(index, foe)
         if shared is None:
             return False
-        for rear, front, speed in self._crossing(scene, self._network.connections[foe]):
+        for rear, front, speed in self._crossing(scene, self._network.connections[foe], by_lane):
             waits = speed < 0.5 and front < shared.other_enter + 0.5
             if rear <= shared.other_leave and (goes_first or not waits):
                 return True
@@ -127,7 +132,7 @@ class RightOfWay:
         scene: Scene,
         index: int,
         foe: int,
-        by_lane: dict[str, list[int]],
+        by_lane: ByLane,
         distance: float,
         standing: float,
     ) -> bool:
@@ -178,7 +183,7 @@ def _is_first(rear: float, front: float, speed: float, shared: Shared, own_arriv
     return speed > 0.5 and (shared.other_enter - front) / speed < own_arrival
 
 
-def _by_lane(others: Vehicles) -> dict[str, list[int]]:
+def _by_lane(others: Vehicles) -> ByLane:
     found: dict[str, list[int]] = defaultdict(list)
     for i, lane in enumerate(others.lanes):
         found[lane].append(i)

@@ -168,10 +168,12 @@ class SumoSimulator:
         self._keep_route()
         x, y, heading = ego.pose
         x, y = x + ego.length / 2 * math.cos(heading), y + ego.length / 2 * math.sin(heading)
-        edge, _, index = self._lane_at(x, y).rpartition("_")
+        lane = self._lane_at(x, y)
+        edge, _, index = lane.rpartition("_")
         angle = 90.0 - math.degrees(heading)
         self._sumo.vehicle.moveToXY(EGO_ID, edge, int(index), x, y, angle, keepRoute=2)
         self._sumo.vehicle.setSpeed(EGO_ID, ego.speed)
+        self._ego = replace(ego, lane=lane)
 
     def _lane_at(self, x: float, y: float) -> str:
         """Return the announced lane nearest to a point, the last of those that are equally near."""
@@ -227,13 +229,11 @@ class SumoSimulator:
         return [others.ids[i] for i in there.nonzero()[0]]
 
     def _scene(self) -> Scene:
-        sumo, ego = self._sumo, self._ego
-        seen: dict[str, dict[int, Any]] = sumo.vehicle.getContextSubscriptionResults(EGO_ID)
-        if ego is None or EGO_ID not in sumo.vehicle.getIDList():
+        seen: dict[str, dict[int, Any]] = self._sumo.vehicle.getContextSubscriptionResults(EGO_ID)
+        # SUMO may for one step find the ego on no lane: then it is not seen from itself, and yet in the simulation
+        if self._ego is None or (EGO_ID not in seen and EGO_ID not in self._sumo.vehicle.getIDList()):
             raise SimulatorError("the ego vanished from the simulation")
-        x, y, heading = ego.pose
-        half = ego.length / 2
-        lane = self._lane_at(x + half * math.cos(heading), y + half * math.sin(heading))
-        self._ego = ego = replace(ego, lane=lane, z=sumo.vehicle.getPosition3D(EGO_ID)[2])
-        signals = {light: sumo.trafficlight.getRedYellowGreenState(light) for light in self._network.signals}
-        return Scene(round(sumo.simulation.getTime(), 3), ego, self._reader.vehicles(seen, self._steps), signals)
+        self._ego = replace(self._ego, z=self._sumo.vehicle.getPosition3D(EGO_ID)[2])
+        time = round(self._sumo.simulation.getTime(), 3)
+        signals = self._reader.signals(self._network.signals, time)
+        return Scene(time, self._ego, self._reader.vehicles(seen, self._steps), signals)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from types import ModuleType
 from typing import Any
 
@@ -28,11 +28,12 @@ class SumoReader:
             sumo.VAR_SPEED: vehicle.getSpeed,
             sumo.VAR_ACCELERATION: vehicle.getAcceleration,
             sumo.VAR_LANE_ID: vehicle.getLaneID,
-            sumo.VAR_LENGTH: vehicle.getLength,
-            sumo.VAR_WIDTH: vehicle.getWidth,
         }
         self.fields = tuple(self._getters)  # what to subscribe to
+        self._sizes: dict[str, tuple[float, float]] = {}  # vehicle -> length and width [m], which never change
         self._headings: dict[str, deque[tuple[int, float]]] = {}
+        self._signals: dict[str, str] = {}
+        self._next_switch = -math.inf  # [s]
 
     def everyone(self, step: int) -> Vehicles:
         """Return all vehicles but the ego; ``step`` numbers the simulator's steps."""
@@ -48,12 +49,26 @@ class SumoReader:
             values = seen[vehicle]
             x, y, z = values[sumo.VAR_POSITION3D]
             heading = wrap_angle(math.radians(90.0 - values[sumo.VAR_ANGLE]))
-            length = values[sumo.VAR_LENGTH]
+            length, width = self._size(vehicle)
             x, y = x - length / 2 * math.cos(heading), y - length / 2 * math.sin(heading)
             yaw_rate = self._yaw_rate(vehicle, heading, step)
-            speed, acceleration = values[sumo.VAR_SPEED], values[sumo.VAR_ACCELERATION]
-            rows.append((x, y, z, heading, speed, yaw_rate, acceleration, length, values[sumo.VAR_WIDTH]))
+            rows.append(
+                (x, y, z, heading, values[sumo.VAR_SPEED], yaw_rate, values[sumo.VAR_ACCELERATION], length, width)
+            )
         return Vehicles.of_rows(ids, tuple(seen[vehicle][sumo.VAR_LANE_ID] for vehicle in ids), rows)
+
+    def signals(self, lights: Iterable[str], time: float) -> Mapping[str, str]:
+        """Return what the lights show; the same object as long as none has come to its next switch."""
+        if time + DT > self._next_switch:
+            trafficlight = self._sumo.trafficlight
+            self._signals = {light: trafficlight.getRedYellowGreenState(light) for light in lights}
+            self._next_switch = min(map(trafficlight.getNextSwitch, lights), default=math.inf)
+        return self._signals
+
+    def _size(self, vehicle: str) -> tuple[float, float]:
+        if vehicle not in self._sizes:
+            self._sizes[vehicle] = self._sumo.vehicle.getLength(vehicle), self._sumo.vehicle.getWidth(vehicle)
+        return self._sizes[vehicle]
 
     def _yaw_rate(self, vehicle: str, heading: float, step: int) -> float:
         """Return the mean yaw rate over the last half second in which the vehicle was seen [rad/s]."""

@@ -1,0 +1,1 @@
+"""Measurements of speed, each against what it could cost at least; run as modules."""

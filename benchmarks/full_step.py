@@ -1,0 +1,214 @@
+"""What a step of the full simulation costs, against what libsumo alone needs for the same step.
+
+    python -m benchmarks.full_step --vehicles 200 --steps 4000 --rounds 5
+
+Each round drives one mission and notes what SUMO is told at every step. Then three processes take turns of CHUNK
+steps: ``libsumo`` steps the warmed town without the ego, ``libsumo + ego`` tells SUMO the same again and reads one
+context subscription, so that the same traffic meets the same ego, and ``stack`` drives the mission by
+``runner.drive``. Times are the CPU's, which other load disturbs less than the clock's. Ends with one JSON object.
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import json
+import multiprocessing
+import time
+from collections.abc import Callable, Sequence
+from importlib.metadata import version
+from multiprocessing.connection import Connection
+from statistics import median
+from typing import Any, NamedTuple
+
+from tmpud.roads import RoadNetwork, load_map
+from tmpud.runner import Mission, drive
+from tmpud.scene import Control, Scene
+from tmpud.simulators.sumo import SumoSimulator
+from tmpud.simulators.sumo_reader import EGO_ID
+
+CHUNK = 250  # steps
+FIRST_SEED = 500
+SETTERS = ("setRoute", "moveToXY", "setSpeed")  # what a drive tells SUMO of vehicles
+VERSIONS = ("tmpud", "libsumo", "numpy", "clingo")
+
+Told = tuple[str, tuple[Any, ...], dict[str, Any]]  # a function of libsumo.vehicle and its arguments
+
+
+class Tape(NamedTuple):
+    """What SUMO was told during a drive, step by step."""
+
+    start: tuple[str, float]  # lane and station at which the ego appeared
+    steps: list[list[Told]]
+
+
+class EnoughError(Exception):
+    """Ends a drive."""
+
+
+class Watched(SumoSimulator):
+    """SUMO that says when a step is about to begin."""
+
+    before_step: Callable[[], None]
+    start: tuple[str, float]
+
+    def reset(self, lane: str, station: float) -> Scene:
+        self.start = lane, station
+        return super().reset(lane, station)
+
+    def step(self, control: Control) -> Scene:
+        self.before_step()
+        return super().step(control)
+
+
+def watched_drive(mission: Mission, before_step: Callable[[], None]) -> Watched:
+    """Drive a mission to its end, or until ``before_step`` raises EnoughError."""
+    towns: list[Watched] = []
+
+    def town(network: RoadNetwork, mission: Mission) -> Watched:
+        towns.append(Watched(network, traffic=mission.traffic, seed=mission.seed))
+        towns[0].before_step = before_step
+        return towns[0]
+
+    with contextlib.suppress(EnoughError):
+        for _ in drive(mission, simulator=town, frames=False):
+            pass
+    return towns[0]
+
+
+def tape(mission: Mission, steps: int) -> Tape:
+    """Drive a mission for at most some steps, in whole chunks, and note what SUMO is told."""
+    import libsumo
+
+    told: list[list[Told]] = []
+
+    def noting(name: str) -> Callable[..., Any]:
+        function = getattr(libsumo.vehicle, name)
+
+        def call(*args: Any, **kwargs: Any) -> Any:
+            if told:
+                told[-1].append((name, args, kwargs))
+            return function(*args, **kwargs)
+
+        return call
+
+    def before_step() -> None:
+        if len(told) == steps:
+            raise EnoughError
+        told.append([])
+
+    for name in SETTERS:
+        setattr(libsumo.vehicle, name, noting(name))
+    start = watched_drive(mission, before_step).start
+    return Tape(start, told[: len(told) // CHUNK * CHUNK])
+
+
+class Turn:
+    """One process's part in a round: called before each step, it waits for its turn at each whole chunk."""
+
+    def __init__(self, parent: Connection, steps: int) -> None:
+        self._parent, self._left = parent, steps
+        self._began: float | None = None
+
+    def __call__(self) -> None:
+        """Raise EnoughError after the last step."""
+        if self._left % CHUNK == 0:
+            if self._began is not None:
+                self._parent.send(time.process_time() - self._began)
+            if self._left == 0:
+                raise EnoughError
+            self._parent.recv()
+            self._began = time.process_time()
+        self._left -= 1
+
+
+def bare(mission: Mission, played: Tape, turn: Turn) -> None:
+    """Step the town without the ego."""
+    with SumoSimulator(load_map(mission.map), traffic=mission.traffic, seed=mission.seed):
+        others_only = [[told for told in step if told[1][0] != EGO_ID] for step in played.steps]
+        _replay(others_only, turn, read=False)
+
+
+def with_ego(mission: Mission, played: Tape, turn: Turn) -> None:
+    """Step the town with the ego as it was moved, and read its context subscription."""
+    with SumoSimulator(load_map(mission.map), traffic=mission.traffic, seed=mission.seed) as town:
+        town.reset(*played.start)
+        _replay(played.steps, turn, read=True)
+
+
+def _replay(steps: list[list[Told]], turn: Turn, *, read: bool) -> None:
+    import libsumo
+
+    for told in steps:
+        turn()
+        for name, args, kwargs in told:
+            with contextlib.suppress(libsumo.TraCIException):  # as the drive does
+                getattr(libsumo.vehicle, name)(*args, **kwargs)
+        libsumo.simulationStep()
+        if read:
+            libsumo.vehicle.getContextSubscriptionResults(EGO_ID)
+    turn()
+
+
+def stack(mission: Mission, played: Tape, turn: Turn) -> None:  # noqa: ARG001
+    """Drive the mission with all that the stack does."""
+    watched_drive(mission, turn)
+
+
+Peer = Callable[[Mission, Tape, Turn], None]
+PEERS: dict[str, Peer] = {"libsumo": bare, "libsumo + ego": with_ego, "stack": stack}
+
+
+def measure(mission: Mission, steps: int) -> dict[str, float]:
+    """Return each peer's mean time for a step [ms], and how many steps there were."""
+    played: Tape = _in_child(_send_tape, mission, steps).recv()
+    turns = {name: _in_child(_play, peer, mission, played) for name, peer in PEERS.items()}
+    spent = dict.fromkeys(PEERS, 0.0)
+    for _ in range(len(played.steps) // CHUNK):
+        for name, child in turns.items():
+            child.send(None)
+            spent[name] += child.recv()
+    return {**{name: 1000 * total / len(played.steps) for name, total in spent.items()}, "steps": len(played.steps)}
+
+
+def _send_tape(parent: Connection, mission: Mission, steps: int) -> None:
+    parent.send(tape(mission, steps))
+
+
+def _play(parent: Connection, peer: Peer, mission: Mission, played: Tape) -> None:
+    with contextlib.suppress(EnoughError):
+        peer(mission, played, Turn(parent, len(played.steps)))
+
+
+def _in_child(work: Callable[..., None], *arguments: Any) -> Connection:
+    """Start a process, which ends by itself, and return this end of a pipe to it; a process holds one simulation."""
+    context = multiprocessing.get_context("fork")
+    here, there = context.Pipe()
+    context.Process(target=work, args=(there, *arguments), daemon=True).start()
+    there.close()
+    return here
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--map", default="millbrook")
+    parser.add_argument("--vehicles", type=int, default=200)
+    parser.add_argument("--steps", type=int, default=4000)
+    parser.add_argument("--rounds", type=int, default=5)
+    asked = parser.parse_args(arguments)
+    rounds = []
+    for seed in range(FIRST_SEED, FIRST_SEED + asked.rounds):
+        mission = Mission(map=asked.map, start="random", goal="random", traffic=asked.vehicles, seed=seed)
+        rounds.append(measure(mission, asked.steps))
+    print(f"{'ms a step, median':<20}{'':>8}{'x libsumo + ego':>18}")
+    found: dict[str, Any] = {}
+    for name in PEERS:
+        found[name] = round(median(row[name] for row in rounds), 3)
+        found[f"{name}, ratio"] = round(median(row[name] / row["libsumo + ego"] for row in rounds), 3)
+        print(f"{name:<20}{found[name]:>8.3f}{found[f'{name}, ratio']:>18.2f}")
+    print(json.dumps({**vars(asked), **found, "each": rounds, "versions": {name: version(name) for name in VERSIONS}}))
+    return 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
