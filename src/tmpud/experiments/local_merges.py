@@ -6,6 +6,7 @@ merges whatever is there; it follows its origin lane's leader until its centre c
 
 from __future__ import annotations
 
+import itertools
 import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -13,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
+from tmpud.execution.abstract import COLLIDE, MERGE, STOP
 from tmpud.judging.judge import Judge
 from tmpud.judging.rules import JudgingRules, Kind, Verdict
 from tmpud.motion.mapping import StateMapping
@@ -33,8 +35,8 @@ CONDITIONS = {
     "high density, low acceleration": Condition(neighbours=3, acceleration=0.5),
     "high density, high acceleration": Condition(neighbours=3, acceleration=1.0),
 }
-OUTCOMES = ("merge", "collide", "stop")
 ROADS = 100  # merges that run side by side
+CHUNKS = 100_003  # more than any series of merges has
 WATCHED = JudgingRules().merge_window  # [s] from the decision on
 
 
@@ -42,9 +44,8 @@ WATCHED = JudgingRules().merge_window  # [s] from the decision on
 class LocalMerge:
     """One forced merge."""
 
-    number: int
     scene: Scene  # at the decision
-    outcome: str  # one of OUTCOMES
+    outcome: str  # merge, collide or stop
     verdicts: tuple[Verdict, ...]  # all that the judge said
 
 
@@ -82,17 +83,29 @@ def local_network(preset: Preset) -> RoadNetwork:
 def local_merges(
     condition: Condition, count: int, seed: int, *, law: PlacementLaw | None = None, roads: int = ROADS
 ) -> Iterator[LocalMerge]:
-    """Yield ``count`` forced merges in order; the first of a longer series are those of a shorter one.
+    """Yield ``count`` forced merges in order; the first of a longer series are those of a shorter one."""
+    chunks = (local_chunk(condition, seed, chunk, law=law, roads=roads) for chunk in itertools.count())
+    yield from itertools.islice(itertools.chain.from_iterable(chunks), count)
+
+
+def local_chunk(
+    condition: Condition, seed: int, chunk: int, *, law: PlacementLaw | None = None, roads: int = ROADS
+) -> Iterator[LocalMerge]:
+    """Yield the merges of one fresh simulation, one on each road.
 
     A run with a collision before the decision is left out.
     """
-    area, number, chunk = LocalArea(TMPUD), 0, 0
-    while number < count:
-        for scene, verdicts in _chunk(area, condition, roads, seed * 100_003 + chunk, law):
-            if number < count:
-                yield LocalMerge(number, scene, _outcome(verdicts), verdicts)
-                number += 1
-        chunk += 1
+    law, area = law or PlacementLaw(), LocalArea(TMPUD)
+    with LocalRoads(condition, roads, CHUNKS * seed + chunk, law) as town:
+        runs = {road: _Run(area, scene) for road, scene in town.scenes.items()}
+        active = dict(runs)
+        _drive(town, active, round(law.settling / DT))
+        valid = list(active.values())
+        for run in valid:
+            run.decide()
+        _drive(town, active, round(WATCHED / DT))
+    for run in valid:
+        yield LocalMerge(run.decision, _outcome(run.judge.verdicts), run.judge.verdicts)
 
 
 class _Run:
@@ -120,22 +133,6 @@ class _Run:
         self.judge.observe(scene)
 
 
-def _chunk(
-    area: LocalArea, condition: Condition, roads: int, seed: int, law: PlacementLaw | None
-) -> list[tuple[Scene, tuple[Verdict, ...]]]:
-    """Run one merge on each road of a fresh simulation; return the scenes at the decisions and what was judged."""
-    law = law or PlacementLaw()
-    with LocalRoads(condition, roads, seed, law) as town:
-        runs = {road: _Run(area, scene) for road, scene in town.scenes.items()}
-        active = dict(runs)
-        _drive(town, active, round(law.settling / DT))
-        valid = [road for road in runs if road in active]
-        for road in valid:
-            active[road].decide()
-        _drive(town, active, round(WATCHED / DT))
-    return [(runs[road].decision, runs[road].judge.verdicts) for road in valid]
-
-
 def _drive(town: LocalRoads, active: dict[int, _Run], steps: int) -> None:
     """Let some steps go by; runs that end in a collision leave ``active``."""
     for _ in range(steps):
@@ -149,4 +146,4 @@ def _drive(town: LocalRoads, active: dict[int, _Run], steps: int) -> None:
 
 def _outcome(verdicts: tuple[Verdict, ...]) -> str:
     kinds = [verdict.kind for verdict in verdicts]
-    return "collide" if Kind.COLLISION in kinds else "stop" if Kind.FORCED_STOP in kinds else "merge"
+    return COLLIDE if Kind.COLLISION in kinds else STOP if Kind.FORCED_STOP in kinds else MERGE
