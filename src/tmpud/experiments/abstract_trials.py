@@ -31,11 +31,12 @@ from tmpud.task.search_planner import SearchPlanner
 
 @dataclass(frozen=True, slots=True)
 class Way:
-    """One mission's request, and the lengths of its transitions."""
+    """One mission's request, the lengths of its transitions, and a planner whose kept tree is the mission's."""
 
     request: ServiceRequest
     domain: Domain
     length: LazyCost
+    planner: SearchPlanner
 
     def path_length(self, transition: Transition) -> float:
         return self.length[transition]
@@ -44,8 +45,6 @@ class Way:
 class Ground(NamedTuple):
     """What the trials of one experiment share."""
 
-    preset: Preset
-    planner: SearchPlanner
     ways: tuple[Way, ...]  # one per mission
     samples: dict[str, JointSample]  # of each road condition
 
@@ -62,13 +61,13 @@ class AbstractTrials:
         world = read_world(Path(shared["world"]))
         ways = tuple(_way(network, preset, route, seed) for seed, route in enumerate(shared["routes"], shared["seed"]))
         samples = {name: joint_sample(world, name, preset.name) for name in world["conditions"]}
-        return Ground(preset, SearchPlanner(network, preset), ways, samples)
+        return Ground(ways, samples)
 
     def run(self, prepared: Ground, arguments: Json) -> Json:
         """Return how each trial ended."""
         communicate = communication(arguments["algorithm"], arguments["beta"])
         sample = prepared.samples[arguments["condition"]]
-        memories = [PlanMemory(prepared.planner, way.length) for way in prepared.ways]
+        memories = [PlanMemory(way.planner, way.length) for way in prepared.ways]
         trials = range(arguments["first"], arguments["first"] + arguments["count"])
         ends = []
         for trial in trials:
@@ -93,7 +92,7 @@ def _way(network: RoadNetwork, preset: Preset, route: Sequence[str], seed: int) 
     start, goal = route
     request = service_request(network, start, (goal,), (), seed)
     paths = PathPlanner(network, StateMapping(network, request, preset, seed))
-    return Way(request, Domain(network, request), LazyCost(paths.path_length))
+    return Way(request, Domain(network, request), LazyCost(paths.path_length), SearchPlanner(network, preset))
 
 
 def _driven(way: Way, memory: PlanMemory, world: AbstractWorld, communicate: Communicate) -> str:
