@@ -60,6 +60,14 @@ class MotionPlanner(Protocol):
         ...
 
 
+class PathLengths(Protocol):
+    """The part of a motion planner that the task level asks."""
+
+    def path_length(self, transition: Transition) -> float:
+        """Return A*(x, x') between the canonical poses of s and s' [m]; inf where it cannot be driven."""
+        ...
+
+
 class SafetyEstimator(Protocol):
     """Algorithm 1: how safe an action would be now."""
 

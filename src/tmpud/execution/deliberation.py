@@ -9,7 +9,7 @@ from tmpud.errors import NoPlanError
 from tmpud.events import Estimated, Event, Planned, Refused
 from tmpud.execution.knowledge import Knowledge
 from tmpud.presets import Preset
-from tmpud.protocols import MotionPlanner, TaskPlanner, World
+from tmpud.protocols import PathLengths, TaskPlanner, World
 from tmpud.safety.estimator import SafetyEstimate
 from tmpud.symbols import Action, ServiceRequest, State, TaskPlan, Transition
 from tmpud.task.domain import Domain
@@ -22,7 +22,7 @@ class Deliberation:
     """Shared by the loop and by what lines 5 to 7 are for each algorithm."""
 
     def __init__(
-        self, request: ServiceRequest, domain: Domain, planner: TaskPlanner, motion: MotionPlanner, world: World
+        self, request: ServiceRequest, domain: Domain, planner: TaskPlanner, motion: PathLengths, world: World
     ) -> None:
         """``domain`` is asked only for what can be done in a state when no plan is left."""
         self.request, self.domain, self.planner, self.world = request, domain, planner, world
@@ -44,9 +44,11 @@ class Deliberation:
 
     def is_better(self, new: TaskPlan, old: TaskPlan) -> bool:
         """Whether a plan is worth changing to: better by the hysteresis, or the old one cannot be driven."""
+        if new == old:
+            return False
         utility = Utility(self.preset, self.known.cost, self.known.safe, {})
         new_sum, old_sum = (sum(utility.total(plan)) for plan in (new, old))
-        return new != old and old_sum - new_sum >= self.preset.hysteresis - 1e-9
+        return old_sum - new_sum >= self.preset.hysteresis - 1e-9
 
     @property
     def settled(self) -> bool:

@@ -61,6 +61,8 @@ class Work(Protocol):
 
 WORK: dict[str, str] = {  # name -> "module:class", imported where it is run
     "full": "tmpud.experiments.full:FullTrials",
+    "abstract": "tmpud.experiments.abstract_trials:AbstractTrials",
+    "learn": "tmpud.experiments.learning:LearningRuns",
 }
 
 

@@ -73,12 +73,12 @@ class AspPlanner:
         """
         search, utility = self._search(state, request, cost, safe)
         if state.leg == search.last:
-            return _report((), utility, optimal=True)
+            return report_of((), utility, optimal=True)
         domain, given = self._memory[request].domain, self._given(search, state)
         answer = ask(facts(domain, state, _shifted(given)), given.ranks, self._options) if given else None
         if given is None or answer is None:
             raise NoPlanError(explain(domain, state, utility.rank))
-        report = _report(walk(state, answer.union), utility, optimal=answer.optimal)
+        report = report_of(walk(state, answer.union), utility, optimal=answer.optimal)
         if report.total_cm != answer.centimetres + split(given.distance[report.plan[-1].next_state])[0]:
             raise UtilityOverflowError(f"the solver's total is not the plan's: {report.total_cm} cm")
         return replace(report, transitions=len(given.ranks), ground_s=answer.ground_s, solve_s=answer.solve_s)
@@ -98,7 +98,7 @@ class AspPlanner:
         A* finds them in the same graph and order as the planner's; the solver has not proved them.
         """
         search, utility = self._search(state, request, cost, safe)
-        return tuple(_report(plan, utility) for plan in best_plans(search, state, count + 1)[1:])
+        return tuple(report_of(plan, utility) for plan in best_plans(search, state, count + 1)[1:])
 
     def _search(self, state: State, request: ServiceRequest, cost: Cost, safe: Safe) -> tuple[Search, Utility]:
         """Return the graph to find a plan in, with the weights of this moment."""
@@ -142,6 +142,6 @@ def _shifted(given: Corridor) -> dict[Transition, int]:
     }
 
 
-def _report(plan: TaskPlan, utility: Utility, *, optimal: bool = False) -> PlanReport:
+def report_of(plan: TaskPlan, utility: Utility, *, optimal: bool = False) -> PlanReport:
     total = sum(split(utility.rank(transition))[0] for transition in plan)
     return PlanReport(plan, *utility.total(plan), total, optimal)
