@@ -106,9 +106,7 @@ def _skipped(request: ServiceRequest, state: State) -> State:
     return state._replace(leg=leg)
 
 
-def _compare_once(
-    case: Case, planners: Mapping[str, AspPlanner], state: State, label: str, tally: Tally
-) -> TaskPlan:
+def _compare_once(case: Case, planners: Mapping[str, AspPlanner], state: State, label: str, tally: Tally) -> TaskPlan:
     weights, last = case.weights(), len(case.request.goals)
     found = {name: _solve(planner, state, case) for name, planner in planners.items()}
     expected = dijkstra(state, last, weights)
