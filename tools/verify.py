@@ -16,7 +16,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import fields
 from pathlib import Path
 
-from tools.verification import agreement, missions, runs
+from tools.verification import agreement, faults, missions, runs
 from tools.verification.figures import ROOT, Figure, keep, provenance, section
 from tools.verification.options import Options
 
@@ -25,6 +25,12 @@ SECTIONS: dict[str, Callable[[Options], list[Figure]]] = {
     "estimates": agreement.estimates,
     "turns": agreement.turns,
     "nets": agreement.nets,
+    "damages": faults.damages,
+    "hangs": faults.hangs,
+    "supervisors": faults.supervisors,
+    "interrupts": faults.interrupts,
+    "disks": faults.disks,
+    "kills": faults.kills,
     "traffic": runs.traffic,
     "repeat": runs.repeat,
     "missions": missions.missions,
@@ -34,6 +40,12 @@ USED = {
     "estimates": ("cases",),
     "turns": ("given_maps",),
     "nets": ("mutants", "given_maps"),
+    "damages": ("damages",),
+    "hangs": ("hangs",),
+    "supervisors": ("meetings",),
+    "interrupts": ("interrupts",),
+    "disks": ("disks",),
+    "kills": ("kills",),
     "traffic": ("seconds",),
     "repeat": ("repeats", "traffic"),
     "missions": ("missions", "traffic", "given_maps"),

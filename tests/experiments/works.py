@@ -9,7 +9,6 @@ import socket
 import stat
 import threading
 import time
-from pathlib import Path
 from typing import Any
 
 from tmpud.experiments.tasks import Json, Task
@@ -34,11 +33,11 @@ class Quick:
     isolated = False
 
     def prepare(self, shared: Json) -> list[int]:
-        misbehave(str(shared.get("how", "")), shared)
+        misbehave(str(shared.get("how", "")))
         return [int(shared["town"])]
 
     def run(self, prepared: list[int], arguments: Json) -> Json:
-        answer: Json | None = misbehave(str(arguments.get("how", "")), arguments)
+        answer: Json | None = misbehave(str(arguments.get("how", "")))
         time.sleep(float(arguments.get("seconds", 0.0)))
         text = f"{prepared} {arguments.get('seed')} " + "x" * int(arguments.get("size", 0))
         if answer is not None:
@@ -80,7 +79,7 @@ class Threaded(Isolated):
         return super().prepare(shared)
 
 
-def misbehave(how: str, arguments: Json) -> Any:
+def misbehave(how: str) -> Any:
     """Do something that a task must not do."""
     match how:
         case "crash":
@@ -103,27 +102,17 @@ def misbehave(how: str, arguments: Json) -> Any:
             return 7
         case "print":
             os.write(1, b'{"key": "0000", "status": "DONE", "result": {}}\n')
-        case "kill once":
-            kill_once(arguments)
     return None
 
 
-def kill_once(arguments: Json) -> None:
-    """Kill the process named in the arguments, unless that was done before."""
-    mark = Path(arguments["mark"])
-    if not mark.exists():
-        mark.touch()
-        os.kill({"task": os.getpid, "parent": os.getppid}[arguments["whom"]](), signal.SIGKILL)
-
-
-def write_garbage() -> None:
+def write_garbage(data: bytes = b"\xff not json\n") -> None:
     """Write to every pipe and socket that this process has open."""
     for descriptor in range(3, 64):
         try:
             mode = os.fstat(descriptor).st_mode
             if stat.S_ISSOCK(mode):
-                socket.socket(fileno=os.dup(descriptor)).sendall(b"\xff not json\n")
+                socket.socket(fileno=os.dup(descriptor)).sendall(data)
             elif stat.S_ISFIFO(mode):
-                os.write(descriptor, b"\xff not json\n")
+                os.write(descriptor, data)
         except OSError:
             continue

@@ -23,6 +23,12 @@ class Options:
     mutants: int = 300  # per map
     seconds: float = 3600.0  # [s] simulated, of traffic
     traffic: int = 120  # vehicles in missions
+    kills: int = 100  # campaigns killed at random moments, and as many at placed ones
+    interrupts: int = 50  # campaigns
+    disks: int = 100  # campaigns that run out of disk
+    meetings: int = 50  # of two supervisors on a folder
+    damages: int = 1_000
+    hangs: int = 100  # tasks that crash, hang or answer nonsense
 
     @property
     def maps(self) -> tuple[str, ...]:

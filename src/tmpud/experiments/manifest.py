@@ -21,7 +21,7 @@ MANIFEST = "manifest.json"
 SCHEMA = 1
 PACKAGES = ("tmpud", "clingo", "libsumo", "numpy")
 SHOWS_ONLY = (  # files that read results and cannot change them
-    "cli", "story.py", "viewer/", "experiments/statistics", "experiments/claims", "experiments/table",
+    "cli/", "story.py", "viewer/", "experiments/statistics", "experiments/claims", "experiments/table",
     "experiments/report", "experiments/charts", "experiments/progress",
 )  # fmt: skip
 

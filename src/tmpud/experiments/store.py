@@ -64,6 +64,8 @@ class Store:
             raise
 
     def _open(self, folder: Path, manifest: Json, digests: dict[str, str]) -> None:
+        if self._results.exists():
+            read_manifest(folder)  # without one, nobody knows whose they are
         claim(folder, manifest)
         contents = lines.read(self._results)
         self.records, refused = lines.counted(self._results, contents, digests)
