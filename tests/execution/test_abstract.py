@@ -6,7 +6,7 @@ import pytest
 
 from tests.execution.scripted import AREA_1, DRIVE_ON, HOME, TO_GOAL
 from tests.task.tiny_roads import driven, two_blocks
-from tmpud.events import Event, Judged
+from tmpud.events import Event, Executed, Judged
 from tmpud.execution.abstract import COLLIDE, MERGE, STOP, AbstractWorld, JointSample
 from tmpud.execution.baselines import communication
 from tmpud.execution.deliberation import Deliberation
@@ -133,7 +133,7 @@ def test_all_algorithms_meet_the_same_traffic_at_the_same_place(algorithm: str) 
         first = PAIRS[world(f"{trial}").estimate(AREA_1).safe]
         mind = Deliberation(TO_GOAL, domain, SearchPlanner(TOWN, TMPUD), Lengths(), here)
         events = list(run_tmpud(HOME, mind, communication(algorithm, 0.3)))
-        steps = [event.step for event in events if hasattr(event, "outcome")]
+        steps = [event.step for event in events if isinstance(event, Executed)]
         if algorithm == "no-com":
             assert (steps[0], steps == [AREA_1]) == (AREA_1, first == COLLIDE)
         elif first != MERGE:

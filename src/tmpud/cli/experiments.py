@@ -49,6 +49,29 @@ def table1(
     _experiment("table1", grid.to_json(), [cell.task for cell in cells(grid)], out, jobs=jobs, as_json=as_json)
 
 
+@paper_app.command()
+def figure4(
+    trials: Annotated[int, typer.Option(min=1, max=1_000_000, help="Per algorithm and road condition.")] = 4000,
+    batches: Annotated[int, typer.Option(min=1, max=1000, help="The trials are split into so many.")] = 4,
+    map_: Map = TOWN,
+    missions: Annotated[str, typer.Option(help="paper, or random:N, which the trials take turns among.")] = "paper",
+    preset: Preset = "tmpud",
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the draws.")] = 1000,
+    world: Annotated[Path | None, typer.Option(help="What learn-world wrote; default: the shipped models.")] = None,
+    jobs: Jobs = 2,
+    out: Folder = None,
+    as_json: Json = False,
+) -> None:
+    """Draw the paper's figure in abstract simulation: five algorithms under four road conditions."""
+    from tmpud.experiments.figure4 import Figure4
+    from tmpud.experiments.local_world import SHIPPED
+
+    asked = Figure4(
+        map=map_, missions=missions, trials=trials, batches=batches, preset=preset, seed=seed, world=world or SHIPPED
+    )
+    _experiment("figure4", asked.to_json(), asked.tasks(), out, jobs=jobs, as_json=as_json)
+
+
 @app.command()
 def sweep(
     file: Annotated[Path, typer.Argument(metavar="FILE.yaml", help="maps, missions, traffic, algorithms, ...")],

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Generator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -56,7 +56,7 @@ class AbstractTrials:
 
     def prepare(self, shared: Json) -> Ground:
         """Return map, missions and learned model."""
-        preset = replace(preset_named(shared["preset"]), **shared["settings"])
+        preset = preset_named(shared["preset"])
         network = load_map(shared["map"], preset.segment_length)
         world = read_world(Path(shared["world"]))
         ways = tuple(_way(network, preset, route, seed) for seed, route in enumerate(shared["routes"], shared["seed"]))

@@ -10,9 +10,11 @@ import numpy as np
 
 from tmpud.errors import RunFileError
 from tmpud.experiments.analysis import Analysis, analyse, report
+from tmpud.experiments.figure4 import DEVIATIONS as FIGURE4_DEVIATIONS
+from tmpud.experiments.figure4 import Figure4
 from tmpud.experiments.grid import Grid
 from tmpud.experiments.grid import rows as grid_rows
-from tmpud.experiments.paper_numbers import TABLE1, Reference
+from tmpud.experiments.paper_numbers import FIGURE4, TABLE1, Reference
 from tmpud.experiments.report import Picture, Report
 from tmpud.experiments.rows import TrialRow
 from tmpud.experiments.store import Results
@@ -38,8 +40,19 @@ def _of_grid(options: Mapping[str, Any], records: Iterable[Record]) -> Iterable[
     return grid_rows(Grid.from_json(options), records)
 
 
+def _of_figure(options: Mapping[str, Any], records: Iterable[Record]) -> Iterable[TrialRow]:
+    return Figure4.from_json(options).rows(records)
+
+
 KINDS = {
     "table1": Kind(title="Full simulation: Table I", rows=_of_grid, reference=TABLE1, deviations=TABLE1_DEVIATIONS),
+    "figure4": Kind(
+        title="Abstract simulation: the paper's figure",
+        rows=_of_figure,
+        reference=FIGURE4,
+        batches=True,
+        deviations=FIGURE4_DEVIATIONS,
+    ),
     "sweep": Kind(title="A sweep in full simulation", rows=_of_grid, reference={}),
 }
 
