@@ -1,3 +1,4 @@
+import re
 import xml.etree.ElementTree as ET
 
 import numpy as np
@@ -69,3 +70,16 @@ def test_names_are_drawn_as_they_are_whatever_they_hold() -> None:
     hostile = ("<script>alert(1)</script>", "$\\frac{", "--><b>", "half a pair \ud800", "very " * 99)
     rows = [row(name, trial, condition=hostile[1]) for name in hostile for trial in range(3)]
     assert not {"script", "b"} & set(elements(draw(panels_of(rows), {}, "x", "").svg))
+
+
+def test_a_legend_that_is_too_wide_takes_another_row_from_the_panel() -> None:
+    names = ("tmpud", *(f"an algorithm with a long name, {number}" for number in range(6)))
+
+    def height(algorithms: tuple[str, ...]) -> float:
+        rows = [row(name, trial) for name in algorithms for trial in range(3)]
+        svg = draw(panels_of(rows), {}, "x", "").svg
+        (panel,) = re.findall(r'id="patch_2">\s*<path d="([^"]*)"', svg)  # the panel's background
+        ys = [float(y) for y in re.findall(r"[ML] [\d.]+ ([\d.]+)", panel)]
+        return max(ys) - min(ys)
+
+    assert height(names) < height(names[:1])

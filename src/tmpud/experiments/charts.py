@@ -23,7 +23,7 @@ from tmpud.experiments.paper_numbers import ALGORITHMS, LABELS, Reference
 from tmpud.experiments.report import Picture
 
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")  # told apart by the colour-blind
-MARKERS = ("*", "s", "D", "^", "o", "v")  # told apart without any colour
+MARKERS = ("*", "s", "D", "^", "o", "v", "P")  # one more than colours: pairs return late
 LONGEST = 40  # letters of a name in a chart
 PAPER, TEXT, GRID = "#9aa0a8", "#1a1a1a", "#e3e5e8"
 PLACES = ((8, 6), (8, -12), (-8, 6), (-8, -12), (8, 16), (8, -22), (-8, 16), (-8, -22))  # [pt]
@@ -160,15 +160,18 @@ def _draw_point(axes: Axes, point: Point, style: Style) -> Annotation:
 
 
 def _spread(axes: Axes, panel: Panel, reference: Reference, labels: Sequence[Annotation]) -> None:
-    """Move each label to the first place beside its point that is free of points, bars and earlier labels."""
+    """Move each label to the place beside its point that hides the least: points, bars and earlier labels."""
     taken = list(_obstacles(axes, panel, reference))
     for label in labels:
-        for x, y in PLACES:
-            label.set_position((x, y))
-            label.set_horizontalalignment("left" if x > 0 else "right")
+
+        def hidden(place: tuple[int, int], label: Annotation = label) -> int:
+            label.set_position(place)
+            label.set_horizontalalignment("left" if place[0] > 0 else "right")
             box = label.get_window_extent()
-            if box.count_overlaps(taken) == 0 and axes.bbox.x0 <= box.x0 and box.x1 <= axes.bbox.x1:
-                break
+            inside = axes.bbox.x0 <= box.x0 and box.x1 <= axes.bbox.x1
+            return int(box.count_overlaps(taken)) + (0 if inside else len(taken))
+
+        hidden(min(PLACES, key=hidden))  # the first of the best
         taken.append(label.get_window_extent())
 
 
@@ -187,8 +190,12 @@ def _legend(figure: Figure, styles: dict[str, Style], paper: bool) -> None:
     marks = {_label(name): style.mark(style.colour) for name, style in styles.items()}
     if paper:
         marks["grey: the paper, same shapes"] = Style(PAPER, "o").mark(PAPER)
-    columns = min(len(marks), 6)
-    legend = figure.legend(list(marks.values()), list(marks), loc="outside lower center", ncols=columns)
+    legend = figure.legend(list(marks.values()), list(marks), loc="outside lower center", ncols=len(marks))
+    for columns in range(len(marks) - 1, 0, -1):
+        if legend.get_window_extent().width <= figure.bbox.width:
+            break
+        legend.remove()
+        legend = figure.legend(list(marks.values()), list(marks), loc="outside lower center", ncols=columns)
     for text in legend.get_texts():
         text.set_parse_math(False)
 
