@@ -100,26 +100,30 @@ def test_the_page_is_self_contained_and_may_load_nothing(tmp_path: Path) -> None
     assert ("content", "default-src 'none'; style-src 'unsafe-inline'") in page.attributes
 
 
+def pages(folder: Path) -> tuple[Page, Page]:
+    """Return both of a folder's reports as a browser sees them, Markdown with HTML allowed."""
+    rendered = MarkdownIt("commonmark", {"html": True}).enable("table").render((folder / "report.md").read_text())
+    return Page((folder / "report.html").read_text()), Page(rendered)
+
+
+@pytest.fixture(scope="module")
+def harmless(tmp_path_factory: pytest.TempPathFactory) -> tuple[Page, Page]:
+    folder = tmp_path_factory.mktemp("harmless")
+    written([row(name, trial, condition="x") for name in ("y", "tmpud") for trial in range(3)], folder)
+    return pages(folder)
+
+
 @pytest.mark.parametrize("hostile", HOSTILE)
-def test_nothing_in_a_name_becomes_markup(hostile: str, tmp_path: Path) -> None:
+def test_nothing_in_a_name_becomes_markup(hostile: str, tmp_path: Path, harmless: tuple[Page, Page]) -> None:
     rows = [row(name, trial, condition=hostile) for name in (hostile, "tmpud") for trial in range(3)]
     rows += [row("tmpud", 3, condition=hostile, status=hostile)]
-    words = dict.fromkeys(("title", "command", "key", "value", "deviation", "caption"), hostile)
-    written(rows, tmp_path, **words)
-    markdown = (tmp_path / "report.md").read_text()
-    page = Page((tmp_path / "report.html").read_text())
-    rendered = Page(MarkdownIt("commonmark", {"html": True}).enable("table").render(markdown))
-    plain = tmp_path / "plain"
-    written([row(name, trial, condition="x") for name in ("y", "tmpud") for trial in range(3)], plain)
-    expected = (
-        Page((plain / "report.html").read_text()),
-        Page(MarkdownIt("commonmark", {"html": True}).enable("table").render((plain / "report.md").read_text())),
-    )
-    for found, harmless in zip((page, rendered), expected, strict=True):
-        assert found.tags == harmless.tags
-        assert {name for name, _ in found.attributes} == {name for name, _ in harmless.attributes}
+    written(rows, tmp_path, **dict.fromkeys(("title", "command", "key", "value", "deviation", "caption"), hostile))
+    for found, expected in zip(pages(tmp_path), harmless, strict=True):
+        assert found.tags == expected.tags
+        assert {name for name, _ in found.attributes} == {name for name, _ in expected.attributes}
         assert " ".join(hostile.replace("\ud800", "?").split()) in found.text
-    assert [v for n, v in rendered.attributes if n in ("src", "href")] == ["table1.svg"]
+    _, rendered = pages(tmp_path)
+    assert [value for name, value in rendered.attributes if name in ("src", "href")] == ["table1.svg"]
 
 
 @pytest.mark.parametrize("text", [*HOSTILE[:6], "a_b", "[1.0, 2.0]", "Th(0.5)", "x](y)"])
