@@ -20,7 +20,7 @@ ROWS = [
     row("b", 0, distance=120.0),
     row("a", 1, distance=200.0, unsafe=True, details={"collisions": {}, "forced_stops": 2}),
     row("b", 1, distance=50.0, status="COLLISION", unsafe=True),
-    row("a", 2, distance=7.0, status="SIM_HANG", unsafe=True, details={"forced_stops": 1}),
+    row("a", 2, distance=7.0, status="SIM_HANG", unsafe=True, details={"collisions": {}, "forced_stops": 1}),
     row("b", 2, distance=140.0),
 ]
 
@@ -57,3 +57,8 @@ def test_a_cell_of_nothing_but_faults_is_json() -> None:
     words = json.loads(json.dumps(cell.to_json(), allow_nan=False))
     assert words["own_distance"] is words["distance"]["value"] is words["per_1000"]["value"] is None
     assert (words["trials"], words["faults"], words["per_1000"]["n"]) == (1, 1, 0)
+
+
+@pytest.mark.parametrize("details", [{}, {"forced_stops": 1}, {"collisions": {"merge": 1}}])
+def test_events_that_rows_tell_only_half_of_are_not_counted_as_none(details: dict[str, object]) -> None:
+    assert found([row("a", 0, unsafe=True, details=details)])["a"].events == {}

@@ -81,9 +81,9 @@ def _cell(condition: str, algorithm: str, rows: Sequence[TrialRow], distance: Es
 
 def _events(rows: Sequence[TrialRow]) -> dict[str, int]:
     """Count what the rows' details tell of: unsafe are collisions of merges and forced stops, other classes are not."""
-    told = [row.details for row in rows if "forced_stops" in row.details]
+    told = [row.details for row in rows if {"collisions", "forced_stops"} <= set(row.details)]
     collisions = Counter({"merge": 0})
     for details in told:
-        collisions.update(details.get("collisions", {}))
+        collisions.update(details["collisions"])
     stops = sum(details["forced_stops"] for details in told)
     return {**{f"{name} collisions": n for name, n in collisions.items()}, "forced stops": stops} if told else {}

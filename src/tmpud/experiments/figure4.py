@@ -103,7 +103,7 @@ class Figure4:
                 status=result["status"] if record.status == DONE else record.status,
                 distance=result.get("distance", 0.0),
                 unsafe=bool(collisions or stops),
-                details={"merge_collisions": collisions, "forced_stops": 0 if collisions else stops},
+                details={"collisions": {"merge": collisions}, "forced_stops": 0 if collisions else stops},
             )
 
 
