@@ -54,6 +54,10 @@ class Mission:
     seed: int = 7
     preset: str = "tmpud"
 
+    def request(self, network: RoadNetwork) -> ServiceRequest:
+        """Return the request on a map; RequestError where a place is not on it."""
+        return service_request(network, self.start, (self.goal,), self.via, self.seed)
+
 
 SimulatorFactory = Callable[[RoadNetwork, Mission], Simulator]
 
@@ -62,7 +66,7 @@ def sumo(network: RoadNetwork, mission: Mission) -> Simulator:
     """Return the default simulator: SUMO in this process."""
     from tmpud.simulators.sumo import SumoSimulator
 
-    return SumoSimulator(network, traffic=mission.traffic, seed=mission.seed)
+    return SumoSimulator(network, traffic=mission.traffic, seed=mission.seed, request=mission.request(network))
 
 
 def drive(
@@ -79,7 +83,7 @@ def drive(
     preset = preset_named(mission.preset)
     communicate = communication(mission.algorithm, mission.beta)
     network = load_map(mission.map, preset.segment_length)
-    request = service_request(network, mission.start, (mission.goal,), mission.via, mission.seed)
+    request = mission.request(network)
     watch = stopwatch or Stopwatch()
     mapping = StateMapping(network, request, preset, mission.seed)
     motion = LaneMotionPlanner(network, mapping)

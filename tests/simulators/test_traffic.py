@@ -7,11 +7,18 @@ from tests.task.tiny_roads import link, network, road
 from tmpud.errors import SimulatorError
 from tmpud.roads import load_map, shipped_towns
 from tmpud.roads.network import RoadNetwork
-from tmpud.simulators.traffic import AHEAD, SPACING, Circulation
+from tmpud.roads.places import request
+from tmpud.roads.towns import PAPER_MISSIONS
+from tmpud.simulators.traffic import AHEAD, SPACING, Circulation, TrafficRules
 
 
 def circulation(roads: RoadNetwork, seed: int = 1) -> Circulation:
     return Circulation(roads, random.Random(seed))
+
+
+def around_the_mission(roads: RoadNetwork, rules: TrafficRules | None = None) -> Circulation:
+    mission = PAPER_MISSIONS["millbrook"]
+    return Circulation(roads, random.Random(1), request(roads, mission.start, (mission.goal,)), rules)
 
 
 def following(roads: RoadNetwork, before: str) -> set[str]:
@@ -27,7 +34,7 @@ def test_random_walks_stay_on_roads_that_follow_and_never_run_out(town: str) -> 
         if start not in town_traffic:
             continue
         walk = town_traffic.walk(start, 200)
-        assert len(walk) == 200
+        assert len(walk) >= 200
         for before, after in zip([start, *walk], walk, strict=False):
             assert after in following(roads, before)
             assert after in town_traffic
@@ -44,6 +51,48 @@ def test_a_walk_from_outside_goes_as_far_as_the_roads_do(spur_net: Path) -> None
     assert circulation(load_map(spur_net)).walk("spur") == []
     into_a_ring = network([road("a"), road("b")], [link("a_0", "b_0"), link("b_0", "b_0")])
     assert circulation(into_a_ring).walk("a") == ["b"] * AHEAD
+
+
+def test_local_cars_go_where_the_mission_does_and_the_others_everywhere() -> None:
+    roads = load_map("millbrook")
+    town_traffic = around_the_mission(roads)
+    way = {"park1e", "park2e", "high3n", "high4n"}
+    near, anywhere = (town_traffic.walk("park1e", 3000, local=local) for local in (True, False))
+    share = [sum(road in way for road in walk) / len(walk) for walk in (near, anywhere)]
+    assert share[0] > 0.4 > 0.15 > share[1]
+    assert set(anywhere) == set(roads.edges)
+
+
+def test_the_number_of_local_cars_depends_on_the_missions_lanes_and_not_on_how_many_cars_there_are() -> None:
+    roads = load_map("millbrook")
+    town_traffic = around_the_mission(roads)
+    length = sum(roads.lanes[f"{road}_{i}"].length for road in ("park1e", "park2e", "high3n", "high4n") for i in (0, 1))
+    assert (
+        town_traffic.locals_among(120) == town_traffic.locals_among(200) == round(TrafficRules().local * length / 1000)
+    )
+    assert town_traffic.locals_among(10) == 10
+    assert circulation(roads).locals_among(120) == 0
+
+
+def test_a_greater_detour_makes_more_roads_the_missions() -> None:
+    roads = load_map("millbrook")
+    lengths = []
+    for detour in (0.0, 350.0, 700.0):
+        rules = TrafficRules(detour=detour, local=1.0)
+        lengths.append(around_the_mission(roads, rules).locals_among(1000))
+    assert lengths == sorted(set(lengths))
+
+
+def test_a_mission_by_way_of_other_places_is_followed_leg_by_leg() -> None:
+    names = "abcd"
+    links = [link(f"{x}_0", f"{y}_0") for x, y in zip(names, "bcda", strict=True)]
+    ring = network([road(name, 1, 100.0) for name in names], links)
+    rules = TrafficRules(local=10.0, detour=0.0)
+
+    def mission_lanes(*vias: str) -> int:
+        return Circulation(ring, random.Random(1), request(ring, "a", ("b",), vias), rules).locals_among(1000)
+
+    assert (mission_lanes(), mission_lanes("c")) == (2, 4)
 
 
 def test_places_are_spaced_out_on_their_lanes() -> None:

@@ -12,22 +12,22 @@ import random
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from types import TracebackType
-from typing import Any
+from typing import Any, Self
 
 from tmpud.dynamics import EGO, VehicleLimits, step
 from tmpud.errors import SimulatorError
 from tmpud.geometry import Polyline, Pose
 from tmpud.roads.network import RoadNetwork
 from tmpud.scene import Control, Scene, Vehicles, VehicleState
+from tmpud.simulators.cars import SENSING_RANGE, Cars, standing_at
 from tmpud.simulators.sumo_process import start
 from tmpud.simulators.sumo_reader import DT, EGO_ID, SumoReader
-from tmpud.simulators.traffic import AHEAD, SPREAD, WISHED_SPEED, Circulation
+from tmpud.simulators.traffic import Circulation, Spot, TrafficRules
+from tmpud.symbols import ServiceRequest
 
-SENSING_RANGE = 80.0  # [m] others further away are not in the scene
 EXTEND_EVERY = 100  # steps between looks at the cars' routes
 CYCLE = 90.0  # [s] about one cycle of the lights
 PATIENCE = 60.0  # [s] simulated
-ROOM_BEHIND, ROOM_AHEAD, ROOM_BESIDE = 15.0, 25.0, 2.5  # [m] around the place where the ego appears
 JOINT = 0.3  # [m] two lanes that meet are equally near to a point this near to their joint
 GENTLE = 2.0  # [m/s^2] braking
 
@@ -35,25 +35,39 @@ GENTLE = 2.0  # [m/s^2] braking
 class SumoSimulator:
     """One town with circulating traffic. libsumo holds one simulation per process."""
 
-    def __init__(self, network: RoadNetwork, *, traffic: int, seed: int, warm_up: float = 60.0) -> None:
+    collision_action = "none"  # what SUMO does where its own cars collide
+
+    def __init__(
+        self,
+        network: RoadNetwork,
+        *,
+        traffic: int,
+        seed: int,
+        warm_up: float = 60.0,
+        request: ServiceRequest | None = None,
+        rules: TrafficRules | None = None,
+    ) -> None:
         """Load the map and let ``traffic`` vehicles circulate for ``warm_up`` simulated seconds, and up to CYCLE more.
 
-        How much more is drawn by the seed, so that the ego meets the lights in any phase.
+        How much more is drawn by the seed, so that the ego meets the lights in any phase. They go where the request
+        does, or everywhere without one.
         """
         self._network = network
         self._limits: VehicleLimits = EGO
         self._rng = random.Random(f"traffic/{seed}")  # noqa: S311
-        self._circulation = Circulation(network, self._rng)
+        self._rules = rules or TrafficRules()
+        self._circulation = Circulation(network, self._rng, request, self._rules)
         self._ego: VehicleState | None = None
         self._steps = 0
         self._roads: list[str] = []  # the announced roads
         self._way: list[tuple[str, Polyline]] = []  # the announced lanes
         self._lines: dict[str, Polyline | None] = {}
         places = self._circulation.places(traffic)
-        self._sumo = start(network, seed)
+        self._sumo = start(network, seed, self.collision_action)
         self._reader = SumoReader(self._sumo)
         with self._errors():
-            self._fill(places)
+            self._cars = Cars(self._sumo, network, self._circulation, self._rules, self._rng)
+            self._cars.fill(places)
             for _ in range(round((warm_up + self._rng.uniform(0.0, CYCLE)) / DT)):
                 self._advance()
 
@@ -91,7 +105,7 @@ class SumoSimulator:
         if self._sumo.isLoaded():
             self._sumo.close()
 
-    def __enter__(self) -> SumoSimulator:
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(
@@ -112,15 +126,21 @@ class SumoSimulator:
 
     def _appear(self, lane: str, station: float) -> Scene:
         pose = self._network.lanes[lane].centre.pose_at(station)
-        self._clear(pose)
+        flow = self._take_over(Spot(lane, station))
+        if flow is None:
+            self._clear(pose)
         edge = self._network.lanes[lane].edge
         index = self._network.lanes[lane].index
+        self._sumo.vehicletype.copy("DEFAULT_VEHTYPE", "ego")
+        self._sumo.vehicletype.setLength("ego", self._limits.length)
+        self._sumo.vehicletype.setWidth("ego", self._limits.width)
         self._sumo.route.add("ego", [edge])
         self._sumo.vehicle.add(EGO_ID, "ego", typeID="ego", departLane=str(index), departPos=f"{station:.2f}")
         self._sumo.vehicle.setSpeedMode(EGO_ID, 0)
         self._sumo.vehicle.setLaneChangeMode(EGO_ID, 0)
         room = self._network.lanes[lane].length - station - self._limits.length
-        speed = min(WISHED_SPEED, self._network.lanes[lane].speed, math.sqrt(2 * GENTLE * max(room, 0.0)))
+        speed = min(self._rules.wished_speed, self._network.lanes[lane].speed, math.sqrt(2 * GENTLE * max(room, 0.0)))
+        speed = speed if flow is None else min(speed, flow)
         self._way, self._roads = [(lane, self._network.lanes[lane].centre)], [edge]
         self._ego = VehicleState(EGO_ID, pose, lane, speed=speed, length=self._limits.length, width=self._limits.width)
         self._place(self._ego)
@@ -131,6 +151,19 @@ class SumoSimulator:
         self._place(self._ego)
         self._advance()
         return self._scene()
+
+    def _take_over(self, spot: Spot) -> float | None:
+        """Wait for a car that passes the ego's place, move it elsewhere and return its speed; None where none comes.
+
+        So the ego begins as one of the cars in the flow, and not in a gap that is long enough to appear in.
+        """
+        for _ in range(round(PATIENCE / DT) if self._sumo.vehicle.getIDCount() else 0):
+            if name := self._cars.passing(spot):
+                speed = float(self._sumo.vehicle.getSpeed(name))
+                self._cars.move(name, self._network.lanes[spot.lane].centre.pose_at(spot.station), self.everyone())
+                return speed
+            self._advance()
+        return None
 
     def _onward(self, lane: str, roads: int = 2) -> list[str]:
         """Return some lanes that follow a lane: SUMO takes away a vehicle that comes to the end of its route."""
@@ -185,48 +218,17 @@ class SumoSimulator:
         self._sumo.simulationStep()
         self._steps += 1
         if self._steps % EXTEND_EVERY == 0:
-            self._extend_routes()
-
-    def _fill(self, places: list[tuple[str, float]]) -> None:
-        """Put a car on each place on the road, each with a wished speed of its own and a random walk to drive."""
-        sumo = self._sumo
-        sumo.vehicletype.copy("DEFAULT_VEHTYPE", "ego")
-        sumo.vehicletype.setLength("ego", self._limits.length)
-        sumo.vehicletype.setWidth("ego", self._limits.width)
-        for number, (lane, station) in enumerate(places):
-            vehicle, road = f"car{number}", self._network.lanes[lane].edge
-            sumo.route.add(vehicle, [road, *self._circulation.walk(road)])
-            index = str(self._network.lanes[lane].index)
-            sumo.vehicle.add(vehicle, vehicle, departLane=index, departPos=f"{station:.2f}", departSpeed="0")
-            sumo.vehicle.setMaxSpeed(vehicle, WISHED_SPEED * self._rng.uniform(1 - SPREAD, 1 + SPREAD))
-
-    def _extend_routes(self) -> None:
-        """Let every car's random walk go on before it runs out."""
-        for vehicle in sorted(self._sumo.vehicle.getIDList()):
-            if vehicle == EGO_ID:
-                continue
-            route, at = self._sumo.vehicle.getRoute(vehicle), self._sumo.vehicle.getRouteIndex(vehicle)
-            if at >= 0 and len(route) - at < AHEAD // 2:
-                self._sumo.vehicle.setRoute(vehicle, [*route[at:], *self._circulation.walk(route[-1])])
+            self._cars.extend_routes()
 
     def _clear(self, pose: Pose) -> None:
         """Wait until the ego's place is free, at most PATIENCE seconds, then take away who stands there."""
         for _ in range(round(PATIENCE)):
-            if not self._standing_at(pose):
+            if not standing_at(self.everyone(), pose):
                 return
             for _ in range(round(1 / DT)):
                 self._advance()
-        for vehicle in self._standing_at(pose):
+        for vehicle in standing_at(self.everyone(), pose):
             self._sumo.vehicle.remove(vehicle)
-
-    def _standing_at(self, pose: Pose) -> list[str]:
-        """Return the cars so near to a place on the road that the ego cannot appear there."""
-        others = self.everyone()
-        dx, dy = others.x - pose.x, others.y - pose.y
-        along = dx * math.cos(pose.heading) + dy * math.sin(pose.heading)
-        across = dy * math.cos(pose.heading) - dx * math.sin(pose.heading)
-        there = (along > -ROOM_BEHIND) & (along < ROOM_AHEAD) & (abs(across) < ROOM_BESIDE)
-        return [others.ids[i] for i in there.nonzero()[0]]
 
     def _scene(self) -> Scene:
         seen: dict[str, dict[int, Any]] = self._sumo.vehicle.getContextSubscriptionResults(EGO_ID)

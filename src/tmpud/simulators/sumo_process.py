@@ -12,13 +12,12 @@ from tmpud.roads.network import RoadNetwork
 from tmpud.simulators.sumo_reader import DT
 
 OPTIONS = (
-    "--no-step-log", "--no-warnings", "--duration-log.disable", "--collision.action", "none",
-    "--collision.check-junctions", "--collision.mingap-factor", "0", "--time-to-teleport", "-1",
-    "--max-depart-delay", "-1", "--step-length", str(DT),
+    "--no-step-log", "--no-warnings", "--duration-log.disable", "--collision.check-junctions",
+    "--collision.mingap-factor", "0", "--time-to-teleport", "-1", "--max-depart-delay", "-1", "--step-length", str(DT),
 )  # fmt: skip
 
 
-def start(network: RoadNetwork, seed: int) -> ModuleType:
+def start(network: RoadNetwork, seed: int, collision_action: str = "none") -> ModuleType:
     """Load the network into libsumo; what it says on import goes to stderr."""
     with contextlib.redirect_stdout(sys.stderr):
         try:
@@ -30,7 +29,8 @@ def start(network: RoadNetwork, seed: int) -> ModuleType:
     if libsumo.isLoaded():
         raise SimulatorError("SUMO holds one simulation per process: close the other, or use a process for each")
     try:
-        libsumo.start(["sumo", "--net-file", network.source, "--seed", str(seed % 2**31), *OPTIONS])
+        options = ("--net-file", network.source, "--seed", str(seed % 2**31), "--collision.action", collision_action)
+        libsumo.start(["sumo", *options, *OPTIONS])
     except Exception as error:  # libsumo's own class cannot be named before it is imported
         raise SimulatorError(f"SUMO does not start on {network.source}: {error}") from error
     return libsumo  # type: ignore[no-any-return]
