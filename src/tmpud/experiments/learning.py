@@ -24,6 +24,7 @@ from tmpud.simulators.local import PlacementLaw
 MERGES = 2000  # per condition
 SEED = 2024
 DIGITS = 4  # of Safe
+_LOCAL = ("seed", "chunk", "roads")
 _LETTER = {outcome: letter for letter, outcome in LETTERS.items()}
 
 
@@ -38,7 +39,7 @@ class LearningRuns:
 
     def run(self, prepared: dict[str, LocalArea], arguments: Json) -> Json:
         """Return the outcomes and the presets' Safe of a chunk."""
-        merges = list(local_chunk(CONDITIONS[arguments["condition"]], arguments["seed"], arguments["chunk"]))
+        merges = list(local_chunk(CONDITIONS[arguments["condition"]], **{name: arguments[name] for name in _LOCAL}))
         safe = {}
         for name, area in prepared.items():
             rng = np.random.default_rng([arguments["seed"], arguments["chunk"]])
@@ -46,18 +47,18 @@ class LearningRuns:
         return {"outcome": "".join(_LETTER[merge.outcome] for merge in merges), "safe": safe}
 
 
-def tasks(merges: int = MERGES, seed: int = SEED) -> list[Task]:
-    """Return the tasks of at least ``merges`` merges per condition, in whole chunks."""
+def tasks(merges: int = MERGES, seed: int = SEED, roads: int = ROADS) -> list[Task]:
+    """Return the tasks of at least ``merges`` merges per condition, in whole chunks of ``roads``."""
     shared = {"presets": sorted(PRESETS)}
     return [
         Task(
             key=f"{condition}/{chunk:04}",
             work="learn",
             shared=shared,
-            arguments={"condition": condition, "chunk": chunk, "seed": seed},
+            arguments={"condition": condition, "chunk": chunk, "seed": seed, "roads": roads},
         )
         for condition in CONDITIONS
-        for chunk in range(-(-merges // ROADS))
+        for chunk in range(-(-merges // roads))
     ]
 
 

@@ -30,6 +30,7 @@ from tmpud.simulators.traffic import SPREAD, WISHED_SPEED
 
 CAR_LENGTH = 5.0  # [m] of SUMO's default car
 MIN_GAP = 4.0  # [m] bumper to bumper in a queue, as in the full simulation
+KEEP_RIGHT = 0.0  # SUMO's lcKeepRight, as in the full simulation
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -170,6 +171,7 @@ class LocalRoads:
             wish = WISHED_SPEED * self._rng.uniform(1 - self._law.spread, 1 + self._law.spread)
             neighbour = _Neighbour(f"{name}.{number}", wish)
             self._add(neighbour.id, road, lane, centre + CAR_LENGTH / 2, wish, "DEFAULT_VEHTYPE")
+            self._sumo.vehicle.setParameter(neighbour.id, "laneChangeModel.lcKeepRight", str(KEEP_RIGHT))
             self._neighbours[road].append(neighbour)
 
     def _add(self, vehicle: str, road: int, lane: int, front: float, speed: float, kind: str) -> None:
