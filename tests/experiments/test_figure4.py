@@ -6,13 +6,14 @@ from typing import Any
 
 import pytest
 
-from tmpud.errors import RequestError
+from tmpud.errors import RequestError, RunFileError
 from tmpud.experiments.abstract_trials import AbstractTrials
 from tmpud.experiments.figure4 import Figure4
-from tmpud.experiments.local_world import CONDITIONS, FORMAT
+from tmpud.experiments.local_world import CONDITIONS, FORMAT, preset_fields
 from tmpud.experiments.paper_numbers import ALGORITHMS
 from tmpud.experiments.rows import TrialRow
 from tmpud.experiments.tasks import DONE, ERROR, Record, Task
+from tmpud.presets import TMPUD
 
 ALWAYS_SAFE = ("m", "1")
 TELLING = ("cmms", "0 1 1 0.2")  # Safe tells the outcome
@@ -24,7 +25,8 @@ def write(tmp_path: Path) -> Any:
     def written(samples: tuple[str, str]) -> Path:
         condition = {"samples": {"outcome": samples[0], "safe": {"tmpud": samples[1]}}}
         path = tmp_path / f"{samples[0]}.json"
-        path.write_text(json.dumps({"format": FORMAT, "conditions": dict.fromkeys(CONDITIONS, condition)}))
+        world = {"format": FORMAT, "presets": {"tmpud": preset_fields(TMPUD)}}
+        path.write_text(json.dumps({**world, "conditions": dict.fromkeys(CONDITIONS, condition)}))
         return path
 
     return written
@@ -62,7 +64,7 @@ def test_where_every_merge_is_safe_all_drive_the_shortest_way(write: Any) -> Non
 
 
 def test_where_safe_tells_the_outcome_only_no_com_is_ever_unsafe(write: Any) -> None:
-    figure = Figure4(trials=60, batches=1, world=write(TELLING), settings={"gamma": 1e5})
+    figure = Figure4(trials=60, batches=1, world=write(TELLING), preset="tmpud:gamma=100000")
     rows = figure.rows(run(figure))
     shortest = min(row.distance for row in rows if row.arrived)
     for algorithm in ("tmpud", "threshold(0.3)", "threshold(0.5)"):
@@ -106,7 +108,7 @@ def test_a_fault_stands_in_every_row_of_its_task(write: Any) -> None:
 
 def test_another_learned_world_or_setting_makes_other_tasks(write: Any) -> None:
     figure = Figure4(trials=4, batches=1, world=write(ALWAYS_SAFE))
-    others = [replace(figure, world=write(BLIND)), replace(figure, settings={"gamma": 1.0}), replace(figure, seed=1)]
+    others = [replace(figure, world=write(BLIND)), replace(figure, preset="tmpud:gamma=1"), replace(figure, seed=1)]
     digests = {each.tasks()[0].digest for each in (figure, *others)}
     assert len(digests) == 4
 
@@ -115,3 +117,9 @@ def test_another_learned_world_or_setting_makes_other_tasks(write: Any) -> None:
 def test_what_cannot_be_run_is_refused(wrong: dict[str, Any], write: Any) -> None:
     with pytest.raises(RequestError):
         Figure4(world=write(ALWAYS_SAFE), **wrong).tasks()
+
+
+def test_a_preset_whose_estimates_were_not_learned_is_refused(write: Any) -> None:
+    (task, *_) = Figure4(trials=4, batches=1, world=write(BLIND), preset="tmpud:safety_distance=12").tasks()
+    with pytest.raises(RunFileError, match="no samples"):
+        AbstractTrials().prepare(task.shared)

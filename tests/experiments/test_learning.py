@@ -10,7 +10,7 @@ from tmpud.execution.abstract import COLLIDE, MERGE, STOP
 from tmpud.experiments.learning import LearningRuns, tasks, to_json, world
 from tmpud.experiments.local_world import CONDITIONS, joint_sample, read_world
 from tmpud.experiments.tasks import DONE, ERROR, Record
-from tmpud.presets import PRESETS
+from tmpud.presets import PRESETS, TMPUD, preset_named
 
 
 def learnt(merges: int = 8, roads: int = 4, seed: int = 5) -> list[Record]:
@@ -38,14 +38,14 @@ def test_every_condition_has_its_merges_for_each_preset(records: list[Record], t
     for condition in CONDITIONS:
         counts = {name: row["count"] for name, row in learned["conditions"][condition]["outcomes"].items()}
         assert sum(counts.values()) == 8
-        for preset in PRESETS:
+        for preset in PRESETS.values():
             sample = joint_sample(learned, condition, preset)
             assert {name: sample.outcome.count(name) for name in (MERGE, COLLIDE, STOP)} == counts
             assert all(0.0 <= value <= 1.0 for value in sample.safe)
 
 
 def test_estimate_and_outcome_stay_together_in_the_order_of_the_chunks(records: list[Record]) -> None:
-    sample = joint_sample(made(list(reversed(records))), CONDITIONS[3], "tmpud")
+    sample = joint_sample(made(list(reversed(records))), CONDITIONS[3], TMPUD)
     chunks = [record.result for record in records if record.key.startswith(CONDITIONS[3])]
     letters = {MERGE: "m", COLLIDE: "c", STOP: "s"}
     assert list(sample.safe) == [value for chunk in chunks for value in chunk["safe"]["tmpud"]]
@@ -78,18 +78,18 @@ def test_a_file_that_is_no_learned_world_is_refused(text: str, tmp_path: Path) -
 def test_a_condition_or_preset_that_was_not_learnt_is_refused(records: list[Record]) -> None:
     learned = made(records)
     with pytest.raises(RunFileError, match="ice"):
-        joint_sample(learned, "ice", "tmpud")
-    with pytest.raises(RunFileError, match="plus"):
-        joint_sample(learned, CONDITIONS[0], "plus")
+        joint_sample(learned, "ice", TMPUD)
+    with pytest.raises(RunFileError, match="samples=50"):
+        joint_sample(learned, CONDITIONS[0], preset_named("paper:samples=50"))
     learned["conditions"][CONDITIONS[0]]["samples"]["outcome"] = "m"
     with pytest.raises(RunFileError, match="no samples"):
-        joint_sample(learned, CONDITIONS[0], "tmpud")
+        joint_sample(learned, CONDITIONS[0], TMPUD)
 
 
 def test_the_shipped_world_was_learnt_from_thousands_of_merges_and_begins_as_it_would_again() -> None:
     shipped = read_world()
     for condition in CONDITIONS:
-        for preset in PRESETS:
+        for preset in PRESETS.values():
             assert len(joint_sample(shipped, condition, preset).safe) >= 2000
     task = tasks(shipped["merges"], shipped["seed"])[-1]
     again = LearningRuns().run(LearningRuns().prepare(task.shared), task.arguments)

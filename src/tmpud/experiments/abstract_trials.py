@@ -60,7 +60,7 @@ class AbstractTrials:
         network = load_map(shared["map"], preset.segment_length)
         world = read_world(Path(shared["world"]))
         ways = tuple(_way(network, preset, route, seed) for seed, route in enumerate(shared["routes"], shared["seed"]))
-        samples = {name: joint_sample(world, name, preset.name) for name in world["conditions"]}
+        samples = {name: joint_sample(world, name, preset) for name in world["conditions"]}
         return Ground(ways, samples)
 
     def run(self, prepared: Ground, arguments: Json) -> Json:

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import importlib.metadata
 import json
-import math
 from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
@@ -15,10 +14,10 @@ from typing import Any
 import numpy as np
 
 from tmpud.experiments.local_merges import CONDITIONS, ROADS, LocalArea, local_chunk
-from tmpud.experiments.local_world import FORMAT, LETTERS
+from tmpud.experiments.local_world import FORMAT, LETTERS, preset_fields
 from tmpud.experiments.statistics import wilson
 from tmpud.experiments.tasks import DONE, Json, Record, Task
-from tmpud.presets import PRESETS, Preset
+from tmpud.presets import PRESETS
 from tmpud.simulators.local import PlacementLaw
 
 MERGES = 2000  # per condition
@@ -78,7 +77,7 @@ def world(records: Sequence[Record], *, merges: int, seed: int, command: str, ti
         "seed": seed,
         "merges": merges,
         "law": asdict(PlacementLaw()),
-        "presets": {name: _fields(PRESETS[name]) for name in sorted(PRESETS)},
+        "presets": {name: preset_fields(PRESETS[name]) for name in sorted(PRESETS)},
         "conditions": {name: {**asdict(CONDITIONS[name]), **_joined(chunks)} for name, chunks in rows.items()},
     }
 
@@ -86,12 +85,6 @@ def world(records: Sequence[Record], *, merges: int, seed: int, command: str, ti
 def to_json(learned: dict[str, Any]) -> str:
     """Return a world as text."""
     return json.dumps(learned, indent=1, allow_nan=False) + "\n"
-
-
-def _fields(preset: Preset) -> dict[str, Any]:
-    """Return a preset's fields, those that are not finite as text."""
-    values = asdict(preset).items()
-    return {name: str(value) if value in (math.inf, -math.inf) else value for name, value in values}
 
 
 def _joined(chunks: Sequence[Json]) -> dict[str, Any]:

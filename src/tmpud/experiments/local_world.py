@@ -3,15 +3,23 @@
 from __future__ import annotations
 
 import json
+import math
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from tmpud.errors import RunFileError
 from tmpud.execution.abstract import COLLIDE, MERGE, STOP, JointSample
+from tmpud.presets import Preset
 
 SHIPPED = Path(__file__).parent.parent / "worlds" / "local.json"
 FORMAT = "tmpud local world 1"
 CONDITIONS = tuple(f"{d} density, {a} acceleration" for d in ("low", "high") for a in ("low", "high"))
+ESTIMATE = (  # the fields of a preset that decide about Safe
+    "aggregate", "share", "samples", "safety_distance", "closing_weight", "margin", "gate", "gate_rate", "strict_gate",
+    "acceleration", "turning", "turning_range", "horizon", "interval", "sensing_range", "neighbours",
+    "neighbour_heading", "ego_speeds",
+)  # fmt: skip
 LETTERS = {"m": MERGE, "c": COLLIDE, "s": STOP}
 
 
@@ -26,11 +34,33 @@ def read_world(path: Path = SHIPPED) -> dict[str, Any]:
     return world
 
 
-def joint_sample(world: dict[str, Any], condition: str, preset: str) -> JointSample:
-    """Return the pairs learnt under a road condition with a preset's estimate; RunFileError where there are none."""
+def preset_fields(preset: Preset) -> dict[str, Any]:
+    """Return a preset's fields as JSON holds them, those that are not finite as text."""
+    return {name: _plain(value) for name, value in asdict(preset).items()}
+
+
+def joint_sample(world: dict[str, Any], condition: str, preset: Preset) -> JointSample:
+    """Return the pairs learnt under a road condition with a preset's estimate; RunFileError where there are none.
+
+    A preset that differs from a learned one only in what does not touch the estimate has the learned one's pairs.
+    """
     try:
         samples = world["conditions"][condition]["samples"]
-        safe = tuple(map(float, samples["safe"][preset].split()))
+        learned = next(name for name, fields in world["presets"].items() if _estimates_alike(fields, preset))
+        safe = tuple(map(float, samples["safe"][learned].split()))
         return JointSample(safe, tuple(LETTERS[letter] for letter in samples["outcome"]))
-    except (AttributeError, KeyError, TypeError, ValueError) as error:
-        raise RunFileError(f"the learned world has no samples of {condition!r} for the preset {preset!r}") from error
+    except (AttributeError, KeyError, StopIteration, TypeError, ValueError) as error:
+        raise RunFileError(
+            f"the learned world has no samples of {condition!r} for the preset {preset.name!r}"
+        ) from error
+
+
+def _estimates_alike(fields: dict[str, Any], preset: Preset) -> bool:
+    mine = preset_fields(preset)
+    return all(fields[name] == mine[name] for name in ESTIMATE)
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, tuple):
+        return list(value)
+    return str(value) if value in (math.inf, -math.inf) else value
