@@ -71,6 +71,12 @@ def test_frames_can_be_left_out_and_nothing_else_changes(mission: Mission, event
     assert bare == [event for event in events if not isinstance(event, Frame)]
 
 
+def test_other_plans_can_be_left_out_and_nothing_else_changes(mission: Mission, events: list[Event]) -> None:
+    bare = list(drive(mission, simulator=among(Neighbour("a_0", 25.0, 4.0, 4.0)), alternatives=0))
+    assert any(isinstance(event, Planned) and event.alternatives for event in events)
+    assert bare == [replace(event, alternatives=()) if isinstance(event, Planned) else event for event in events]
+
+
 def test_every_action_begins_on_an_estimate_of_its_own_moment(events: list[Event]) -> None:
     decisions = [event for event in events if isinstance(event, Estimated | Executed | Frame)]
     for i, event in enumerate(decisions):

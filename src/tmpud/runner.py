@@ -13,7 +13,7 @@ import numpy as np
 from tmpud.errors import InvalidStateError, NoPlanError, SimulatorError
 from tmpud.events import Event, Finished, Header
 from tmpud.execution.baselines import communication
-from tmpud.execution.deliberation import Deliberation
+from tmpud.execution.deliberation import ALTERNATIVES, Deliberation
 from tmpud.execution.timing import Stopwatch
 from tmpud.execution.tmpud import run_tmpud
 from tmpud.execution.worlds import SimulatedWorld
@@ -75,10 +75,13 @@ def drive(
     simulator: SimulatorFactory = sumo,
     stopwatch: Stopwatch | None = None,
     frames: bool = True,
+    alternatives: int = ALTERNATIVES,
 ) -> Iterator[Event]:
     """Run one mission and yield its events, from Header to Finished.
 
-    The same mission gives the same events. Raises MapError, RequestError or SimulatorError for what cannot be run.
+    The same mission gives the same events. ``frames`` and ``alternatives``, how many other plans are listed beside
+    each one, are for people to look at: the drive is the same without them. Raises MapError, RequestError or
+    SimulatorError for what cannot be run.
     """
     preset = preset_named(mission.preset)
     communicate = communication(mission.algorithm, mission.beta)
@@ -100,7 +103,7 @@ def drive(
         start = domain.start_state()
         world.enter(*mapping(start))
         yield _header(mission, preset, network, request)
-        mind = Deliberation(request, domain, planner, motion, world)
+        mind = Deliberation(request, domain, planner, motion, world, alternatives=alternatives)
         status, message = yield from _ended(run_tmpud(start, mind, communicate), world)
     finally:
         town.close()

@@ -9,9 +9,10 @@ from hypothesis import strategies as st
 from tests.judging.roads import WIDTH, crossroads
 from tmpud.dynamics import EGO
 from tmpud.geometry import Pose
+from tmpud.motion import speed
 from tmpud.motion.path import Cross, Follow
 from tmpud.motion.route import Route, build_route
-from tmpud.motion.speed import Obstacle, acceleration, follow, leader
+from tmpud.motion.speed import LOOK_AHEAD, Obstacle, acceleration, follow, leader
 from tmpud.scene import Scene, Vehicles, VehicleState
 
 DT = 0.05
@@ -154,6 +155,22 @@ def test_left_and_right_are_the_same(y: float, ahead: float) -> None:
         assert left.gap == pytest.approx(right.gap)
 
 
+def test_a_car_beyond_the_look_ahead_is_not_followed_on_the_straight_line_that_continues_the_way() -> None:
+    route = turn_left()
+    x, y, heading = route.pose_at(LOOK_AHEAD + EGO.length)
+    beyond = VehicleState("far", Pose(x + 9.0 * math.cos(heading), y + 9.0 * math.sin(heading), heading), "")
+    assert leader(Scene(0.0, EGO_AT_START, Vehicles.of([beyond]), {}), route, 0.0) is None
+
+
+def test_the_first_look_by_circles_leaves_out_nobody_who_is_in_the_way(monkeypatch: pytest.MonkeyPatch) -> None:
+    rng, route = np.random.default_rng(1), turn_left()
+    scenes = [Scene(0.0, EGO_AT_START, Vehicles.of([beside(route, rng)]), {}) for _ in range(2000)]
+    found = [leader(scene, route, 0.0) for scene in scenes]
+    monkeypatch.setattr(speed, "_near", lambda scene, _: np.arange(len(scene.others)))
+    assert found == [leader(scene, route, 0.0) for scene in scenes]
+    assert 200 < sum(one is None for one in found) < 1800
+
+
 def test_an_empty_road_has_no_leader() -> None:
     assert followed() is None
 
@@ -165,6 +182,16 @@ def turn_left() -> Route:
     way = next(way for way in ROADS.outgoing("in_1") if way.to_lane == "north_0")
     lanes = ROADS.lanes
     return build_route(ROADS, (Follow(lanes["in_1"], 50.0, 100.0), Cross(way), Follow(lanes["north_0"], 0.0, 50.0)), ())
+
+
+EGO_AT_START = VehicleState("ego", turn_left().pose_at(0.0), "in_1", speed=5.0)
+
+
+def beside(route: Route, rng: np.random.Generator) -> VehicleState:
+    """Return a vehicle of any size and heading near the route."""
+    x, y, _ = route.pose_at(rng.uniform(0.0, LOOK_AHEAD))
+    pose = Pose(x + rng.uniform(-8, 8), y + rng.uniform(-8, 8), rng.uniform(-math.pi, math.pi))
+    return VehicleState("other", pose, "", length=rng.uniform(1.0, 15.0), width=rng.uniform(0.5, 2.5))
 
 
 @pytest.mark.parametrize("route", [straight(), turn_left()], ids=["straight", "left"])

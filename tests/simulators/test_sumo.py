@@ -130,6 +130,34 @@ def test_a_car_that_drives_straight_on_has_no_yaw_rate(start: Start) -> None:
         assert abs(float(scene.others.yaw_rate[0])) < 0.01
 
 
+def test_lights_are_shown_as_they_are_at_every_step() -> None:
+    import libsumo
+
+    town = load_map("millbrook")
+    shown = set()
+    with SumoSimulator(town, traffic=0, seed=3, warm_up=0.0) as simulator:
+        simulator.reset("park1e_0", 20.0)
+        for _ in range(round(100.0 / DT)):
+            scene = simulator.step(replace(COAST, acceleration=-8.0))
+            assert scene.signals == {name: libsumo.trafficlight.getRedYellowGreenState(name) for name in town.signals}
+            shown.add(tuple(scene.signals.values()))
+    assert len(shown) > 5
+
+
+def test_an_ego_that_sumo_finds_on_no_lane_for_a_step_is_still_there(
+    start: Start, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    import libsumo
+
+    town = start()
+    town.reset("a_0", 20.0)
+    monkeypatch.setattr(libsumo.vehicle, "getContextSubscriptionResults", lambda _: {})
+    assert town.step(COAST).ego.lane == "a_0"
+    libsumo.vehicle.remove("ego")
+    with pytest.raises(SimulatorError):
+        town.step(COAST)
+
+
 def test_the_same_seed_gives_the_same_traffic_and_another_one_another(start: Start) -> None:
     def cars(seed: int) -> tuple[tuple[str, ...], list[float]]:
         town = start(traffic=10, seed=seed, warm_up=10.0)

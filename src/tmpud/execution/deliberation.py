@@ -22,11 +22,19 @@ class Deliberation:
     """Shared by the loop and by what lines 5 to 7 are for each algorithm."""
 
     def __init__(
-        self, request: ServiceRequest, domain: Domain, planner: TaskPlanner, motion: PathLengths, world: World
+        self,
+        request: ServiceRequest,
+        domain: Domain,
+        planner: TaskPlanner,
+        motion: PathLengths,
+        world: World,
+        *,
+        alternatives: int = ALTERNATIVES,
     ) -> None:
         """``domain`` is asked only for what can be done in a state when no plan is left."""
         self.request, self.domain, self.planner, self.world = request, domain, planner, world
         self.preset: Preset = planner.preset
+        self._alternatives = alternatives
         self.known = Knowledge(motion.path_length, self.preset)
         self.replans = 0
         self._motion_length = motion.path_length
@@ -119,7 +127,8 @@ class Deliberation:
         cost, safe = self.known.cost, self.known.safe
         utility = Utility(self.preset, cost, safe, {})
         terms = [utility.terms(step) for step in plan]
-        others = self.planner.alternatives(start, self.request, cost, safe, ALTERNATIVES)
+        count = self._alternatives
+        others = self.planner.alternatives(start, self.request, cost, safe, count) if count else ()
         others = tuple(other for other in others if other.plan != plan)
         return Planned(
             time=self.world.time,

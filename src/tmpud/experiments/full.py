@@ -40,7 +40,7 @@ class FullTrials:
     def run(self, prepared: Town, arguments: Json) -> Json:
         """Drive one trial with the algorithm and preset of the arguments."""
         mission = replace(prepared.mission, **arguments)
-        result = summary(drive(mission, simulator=lambda *_: prepared.simulator, frames=False))
+        result = summary(drive(mission, simulator=lambda *_: prepared.simulator, frames=False, alternatives=0))
         if result["status"] == SIM_CRASH:
             raise SimulatorError(result["message"])
         return result

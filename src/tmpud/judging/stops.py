@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from tmpud.judging.merges import MergeLog
 from tmpud.judging.rules import JudgingRules, Kind, Verdict
-from tmpud.scene import Scene
+from tmpud.scene import Scene, Vehicles
 
 
 class ForcedStops:
@@ -18,20 +18,24 @@ class ForcedStops:
 
     def __init__(self, rules: JudgingRules, merges: MergeLog) -> None:
         self._rules, self._merges = rules, merges
-        self._speeds: dict[str, float] = {}  # of the step before
+        self._others: Vehicles | None = None  # at the step before
         self._stopped: set[str] = set()
 
     def observe(self, scene: Scene) -> Iterable[Verdict]:
-        before = self._speeds
-        self._speeds = dict(zip(scene.others.ids, scene.others.speed.tolist(), strict=True))
+        before, self._others = self._others or scene.others, scene.others
         for merge, i in self._merges.followers:
             name, speed = scene.others.ids[i], float(scene.others.speed[i])
-            falls = before.get(name, 0.0) >= self._rules.stopped > speed
+            falls = _speed(before, name) >= self._rules.stopped > speed
             new = name in merge.movers and name not in self._stopped
             if falls and new and scene.ego.speed >= speed + self._rules.faster:
                 self._stopped.add(name)
                 detail = f"{speed:.1f} m/s behind the ego at {scene.ego.speed:.1f} m/s"
                 yield Verdict(scene.time, Kind.FORCED_STOP, name, merge.transition, "ego", detail)
+
+
+def _speed(others: Vehicles, name: str) -> float:
+    """Return a vehicle's speed, 0 where it is not there [m/s]."""
+    return float(others.speed[others.ids.index(name)]) if name in others.ids else 0.0
 
 
 class HardBraking:

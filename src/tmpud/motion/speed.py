@@ -6,6 +6,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tmpud.dynamics import clamp
 from tmpud.motion.route import SPACING, Route
@@ -19,6 +20,9 @@ LINE_GAP = 0.8  # [m] before a stop line
 LOOK_AHEAD = 50.0  # [m]
 SAME_LEVEL = 3.0  # [m]
 SIDE_ROOM = 0.25  # [m] kept free beside the ego
+LENGTHWAYS = np.array([1, 1, 1, 0, 0, -1, -1, -1]) / 2  # eight points on a box's rim, as shares of its length ...
+SIDEWAYS = np.array([1, 0, -1, 1, -1, 1, 0, -1]) / 2  # ... and of its width
+COARSE = 4  # points of the route from one to the next where a first look is taken at who is near it
 
 
 class Obstacle(NamedTuple):
@@ -30,53 +34,68 @@ class Obstacle(NamedTuple):
 
 def leader(scene: Scene, route: Route, station: float) -> Obstacle | None:
     """Return the nearest vehicle ahead whose box reaches into the ego's way, within LOOK_AHEAD metres."""
-    ego = scene.ego
-    others = _near(scene)
-    if not len(others):
-        return None
-    first, last = route.index(station), route.index(station + LOOK_AHEAD + ego.length) + 1
-    along, across, angle = _beside(route, first, last, _rims(others))
-    reach = ego.width / 2 + SIDE_ROOM
-    left, right = across.max(axis=1), across.min(axis=1)
-    in_way = (right < reach) & (left > -reach) & (along.max(axis=1) > station - first * SPACING)
-    if not in_way.any():
-        return None
-    within = np.where(np.abs(across) < reach, along, along.mean(axis=1, keepdims=True))
-    gaps = np.where(in_way, within.min(axis=1) - (station - first * SPACING) - ego.length / 2, math.inf)
-    i = int(np.argmin(gaps))
-    speed = float(others.speed[i] * np.cos(others.heading[i] - angle[i]))
-    return Obstacle(float(gaps[i]), max(speed, 0.0))
-
-
-def _near(scene: Scene) -> Vehicles:
-    """Return the vehicles on the ego's level that are within reach."""
     ego, others = scene.ego, scene.others
-    distance = np.hypot(others.x - ego.pose.x, others.y - ego.pose.y)
-    return others.take((distance < LOOK_AHEAD + ego.length) & (np.abs(others.z - ego.z) < SAME_LEVEL))
+    first, last = route.index(station), route.index(station + LOOK_AHEAD + ego.length) + 1
+    near = _near(scene, route.points[first:last:COARSE])
+    if not near.size:
+        return None
+    along, across, angle = _beside(route, first, last, *_rims(others, near))
+    reach = ego.width / 2 + SIDE_ROOM
+    boxes = zip(along.tolist(), across.tolist(), strict=True)
+    begin = station - first * SPACING
+    rears = ((_rear(box, reach), i) for i, box in enumerate(boxes) if max(box[0]) > begin)
+    rear, i = min(rears, default=(math.inf, 0))
+    gap = rear - begin - ego.length / 2
+    if gap > LOOK_AHEAD:
+        return None
+    speed = float(others.speed[near[i]] * np.cos(others.heading[near[i]] - angle[i]))
+    return Obstacle(gap, max(speed, 0.0))
 
 
-def _rims(others: Vehicles) -> FloatArray:
-    """Return points on the rims of N boxes: (N, 8, 2)."""
-    lengthways = others.length[:, None] / 2 * np.array([1, 1, 1, 0, 0, -1, -1, -1])
-    sideways = others.width[:, None] / 2 * np.array([1, 0, -1, 1, -1, 1, 0, -1])
-    cos, sin = np.cos(others.heading)[:, None], np.sin(others.heading)[:, None]
-    x = others.x[:, None] + lengthways * cos - sideways * sin
-    y = others.y[:, None] + lengthways * sin + sideways * cos
-    return np.stack([x, y], axis=-1)
+def _rear(box: tuple[list[float], list[float]], reach: float) -> float:
+    """Return how far along the route a box begins to reach into the way [m]; inf where it keeps off.
+
+    The box is how far along the route and to its left the points of its rim are.
+    """
+    along, across = box
+    if min(across) >= reach or max(across) <= -reach:
+        return math.inf
+    middle = sum(along) / len(along)
+    return min(s if abs(d) < reach else middle for s, d in zip(along, across, strict=True))
 
 
-def _beside(route: Route, first: int, last: int, points: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return how far along (N, K) and left (N, K) of a part of the route points (N, K, 2) are [m].
+def _near(scene: Scene, way: FloatArray) -> NDArray[np.intp]:
+    """Return which vehicles on the ego's level have a circle that comes near the way ahead (P, 2), and a few more."""
+    ego, others = scene.ego, scene.others
+    reach = (np.hypot(others.length, others.width) + ego.width) / 2 + SIDE_ROOM + COARSE * SPACING
+    dx, dy = others.x[:, None] - way[:, 0], others.y[:, None] - way[:, 1]
+    near = (dx * dx + dy * dy).min(axis=1) < reach * reach
+    return np.flatnonzero(near & (np.abs(others.z - ego.z) < SAME_LEVEL))
+
+
+def _rims(others: Vehicles, which: NDArray[np.intp]) -> tuple[FloatArray, FloatArray]:
+    """Return x and y (K, 8) of points on the rims of K boxes."""
+    heading = others.heading[which, None]
+    lengthways = others.length[which, None] * LENGTHWAYS
+    sideways = others.width[which, None] * SIDEWAYS
+    cos, sin = np.cos(heading), np.sin(heading)
+    x = others.x[which, None] + lengthways * cos - sideways * sin
+    return x, others.y[which, None] + lengthways * sin + sideways * cos
+
+
+def _beside(
+    route: Route, first: int, last: int, x: FloatArray, y: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return how far along (N, K) and left (N, K) of a part of the route points (N, K) are [m].
 
     The third array (N,) is the route's heading beside each row's first point [rad].
     """
     part = route.points[first:last]
-    dx, dy = points[..., None, 0] - part[:, 0], points[..., None, 1] - part[:, 1]
-    nearest = np.argmin(dx * dx + dy * dy, axis=-1)[..., None]
-    dx, dy = np.take_along_axis(dx, nearest, -1)[..., 0], np.take_along_axis(dy, nearest, -1)[..., 0]
-    angle = route.headings[first + nearest[..., 0]]
-    along = nearest[..., 0] * SPACING + dx * np.cos(angle) + dy * np.sin(angle)
-    return along, dy * np.cos(angle) - dx * np.sin(angle), angle[:, 0]
+    dx, dy = x[..., None] - part[:, 0], y[..., None] - part[:, 1]
+    nearest = (dx * dx + dy * dy).argmin(axis=-1)
+    dx, dy, angle = x - part[nearest, 0], y - part[nearest, 1], route.headings[first + nearest]
+    cos, sin = np.cos(angle), np.sin(angle)
+    return nearest * SPACING + dx * cos + dy * sin, dy * cos - dx * sin, angle[:, 0]
 
 
 def acceleration(route: Route, station: float, speed: float, obstacles: list[Obstacle], stop: float | None) -> float:
