@@ -14,6 +14,7 @@ from tmpud.experiments.store import LOCK, RESULTS
 
 REFUSED = 2  # exit code
 INTERRUPTED = 130  # exit code
+MESSAGE = 256  # [bytes] that what is said of a full disk needs, in a file as limited as the others
 
 
 def interrupt_plans(number: int, seed: int) -> list[Plan]:
@@ -77,7 +78,7 @@ def full_plans(number: int, seed: int) -> list[Plan]:
     """Return sizes at which the disk is full, up to that of the results."""
     rng = random.Random(seed)
     largest = results_size()
-    return [{"isolated": False, "full": rng.randrange(16, largest)} for _ in range(number)]
+    return [{"isolated": False, "full": rng.randrange(MESSAGE, largest)} for _ in range(number)]
 
 
 def results_size() -> int:
