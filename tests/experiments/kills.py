@@ -68,7 +68,12 @@ class Campaign:
         return self._err.read_text()
 
     def wait(self) -> int:
-        return self.process.wait(PATIENCE)
+        """Return the exit code; one that takes too long is killed."""
+        try:
+            return self.process.wait(PATIENCE)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            return self.process.wait()
 
     def others(self) -> list[int]:
         """Return all living processes of the campaign but the supervisor."""

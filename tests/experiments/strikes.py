@@ -13,7 +13,8 @@ from tests.experiments.kills import PATIENCE, Campaign, Found, Plan, compare, co
 from tmpud.experiments.store import LOCK, RESULTS
 
 REFUSED = 2  # exit code
-INTERRUPTED = 130, -signal.SIGINT, -signal.SIGTERM  # exit codes; the last two before anything was begun
+INTERRUPTED = 130  # exit code
+MESSAGE = 256  # [bytes] that what is said of a full disk needs, in a file as limited as the others
 
 
 def interrupt_plans(number: int, seed: int) -> list[Plan]:
@@ -28,7 +29,7 @@ def interrupt_plans(number: int, seed: int) -> list[Plan]:
             "stuck": n // 2 % 2 == 1,
             "signal": signal.SIGTERM if n % 5 == 4 else signal.SIGINT,
             "group": rng.random() < 0.5,
-            "at": rng.uniform(0.2, 0.9),
+            "at": rng.uniform(0.0, 0.6),
         }
         for n in range(number)
     ]
@@ -40,6 +41,7 @@ def interrupt(plan: Plan) -> Found:
     with tempfile.TemporaryDirectory() as parent:
         folder, found = Path(parent) / "struck", Found()
         campaign = Campaign(folder, plan)
+        _wait_for(folder / LOCK, campaign)  # before, an interrupt may still be one that a shell had ignored
         time.sleep(took * plan["at"])
         found.struck = campaign.process.poll() is None
         (os.killpg if plan["group"] else os.kill)(campaign.process.pid, plan["signal"])
@@ -47,7 +49,7 @@ def interrupt(plan: Plan) -> Found:
         code = campaign.wait()
         found.orphans = campaign.left_over()
         found.seconds = time.monotonic() - began
-        if code not in (*INTERRUPTED, 0):
+        if code != (INTERRUPTED if found.struck else 0):
             found.notes.append(f"exit code {code}: {campaign.said()[-300:]}")
         compare_midway(found, folder, campaign.given, expected)
         _resume(folder, plan, found)
@@ -76,7 +78,7 @@ def full_plans(number: int, seed: int) -> list[Plan]:
     """Return sizes at which the disk is full, up to that of the results."""
     rng = random.Random(seed)
     largest = results_size()
-    return [{"isolated": False, "full": rng.randrange(16, largest)} for _ in range(number)]
+    return [{"isolated": False, "full": rng.randrange(MESSAGE, largest)} for _ in range(number)]
 
 
 def results_size() -> int:

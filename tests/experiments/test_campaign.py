@@ -20,7 +20,8 @@ from tmpud.experiments.workers import Limits
 
 TRY = Experiment(name="try", options={"trials": 3})
 FAULTS = {
-    "crash": SIM_CRASH, "exit": SIM_CRASH, "leave": SIM_CRASH, "garbage": SIM_CRASH, "hang": SIM_HANG,
+    "crash": SIM_CRASH, "exit": SIM_CRASH, "leave": SIM_CRASH, "garbage": SIM_CRASH, "simulator": SIM_CRASH,
+    "hang": SIM_HANG,
     "raise": ERROR, "nan": ERROR, "set": ERROR, "no mapping": ERROR, "print": DONE,
 }  # fmt: skip
 

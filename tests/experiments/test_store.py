@@ -5,15 +5,16 @@ import json
 import os
 from pathlib import Path
 
+import grimp
 import pytest
 
 import tmpud
 from tests.experiments.works import tasks
 from tmpud.errors import FolderError, RunFileError
 from tmpud.experiments import store
-from tmpud.experiments.manifest import MANIFEST, Experiment, code_digest
+from tmpud.experiments.manifest import MANIFEST, SHOWS_ONLY, Experiment, code_digest
 from tmpud.experiments.store import RESULTS, TIMING, Store, read_results
-from tmpud.experiments.tasks import DONE, Record
+from tmpud.experiments.tasks import DONE, WORK, Record
 
 TRY = Experiment(name="try", options={"trials": 3, "beta": [0.1, 0.3]}, command="tmpud try --jobs 2")
 TASKS = tasks(3)
@@ -130,6 +131,15 @@ def test_wall_clock_times_are_beside_the_results(tmp_path: Path) -> None:
         open_store.note([{"key": "0000", "seconds": 1.5}])
         assert json.loads((tmp_path / TIMING).read_text()) == {"key": "0000", "seconds": 1.5}
         assert (tmp_path / RESULTS).read_bytes() == b""
+
+
+def test_no_work_depends_on_what_is_left_out_of_the_code() -> None:
+    graph = grimp.build_graph("tmpud")
+    left_out = tuple(f"tmpud.{name}".removesuffix(".py").replace("/", ".").rstrip(".") for name in SHOWS_ONLY)
+    for work in (*WORK.values(), "tmpud.experiments.worker:main"):
+        behind = graph.find_upstream_modules(work.partition(":")[0])
+        assert behind, work
+        assert not [module for module in behind if module.startswith(left_out)], work
 
 
 def test_the_code_is_all_but_what_shows_results(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -143,6 +143,7 @@ def _fall(both: bool) -> None:
 
 def main() -> int:
     arranged = plan()
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # whatever started this may have had it ignored
     if "point" in arranged:
         _arrange(**arranged["point"])
     if "full" in arranged:

@@ -11,6 +11,7 @@ import threading
 import time
 from typing import Any
 
+from tmpud.errors import SimulatorError
 from tmpud.experiments.tasks import Json, Task
 
 HERE = "tests.experiments.works"
@@ -94,6 +95,8 @@ def misbehave(how: str) -> Any:
             raise ValueError(f"no\nsuch {object()}")
         case "garbage":
             write_garbage()
+        case "simulator":
+            raise SimulatorError("it has died")
         case "nan":
             return {"distance": float("nan")}
         case "set":

@@ -14,7 +14,7 @@ _libc = ctypes.CDLL(None)
 
 
 def die_with(parent: int) -> None:
-    """Have this process killed when its parent ends, and end now where it has ended already."""
+    """Have this process killed when its parent, or the thread that started it, ends; end now where it has already."""
     if sys.platform == "linux":
         _libc.prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
     if os.getppid() != parent:

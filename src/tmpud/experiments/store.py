@@ -7,7 +7,7 @@ import json
 import os
 import time
 from collections.abc import Iterable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any, Self
@@ -52,10 +52,10 @@ class Store:
     def __init__(self, folder: Path, experiment: Experiment, tasks: Sequence[Task]) -> None:
         """Take over the folder; FolderError where it is another's, in use, or cannot be written."""
         self._results = folder / RESULTS
-        self._descriptor = -1
+        self._open_files = ExitStack()
         with _named(folder):
             folder.mkdir(parents=True, exist_ok=True)
-            self._lock = _locked(folder / LOCK)
+            self._open_files.enter_context(_locked(folder / LOCK))
         try:
             with _named(folder):
                 self._open(folder, describe(experiment, tasks), {task.key: task.digest for task in tasks})
@@ -71,12 +71,13 @@ class Store:
         self.records, refused = lines.counted(self._results, contents, digests)
         self.damages = (*contents.damages, *refused)
         self._descriptor = os.open(self._results, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o644)
+        self._open_files.callback(os.close, self._descriptor)
         self._size = contents.size
         os.ftruncate(self._descriptor, self._size)  # a line that was cut off would spoil the next
         os.fsync(self._descriptor)
         sync_folder(folder)
-        self.log: IO[bytes] = (folder / LOG).open("ab")
-        self._timing = (folder / TIMING).open("a", encoding="utf-8")
+        self.log = self._open_files.enter_context((folder / LOG).open("ab"))
+        self._timing = self._open_files.enter_context((folder / TIMING).open("a", encoding="utf-8"))
 
     def append(self, records: Iterable[Record]) -> None:
         """Write records such that they outlast a kill and a loss of power; all or, with FolderError, none."""
@@ -100,13 +101,8 @@ class Store:
 
     def close(self) -> None:
         """Let others have the folder."""
-        for file in (getattr(self, "log", None), getattr(self, "_timing", None)):
-            if file is not None:
-                with suppress(OSError):
-                    file.close()
-        if self._descriptor >= 0:
-            os.close(self._descriptor)
-        self._lock.close()
+        with suppress(OSError):  # what cannot be written was said before
+            self._open_files.close()
 
     def __enter__(self) -> Self:
         return self

@@ -20,6 +20,7 @@ from collections.abc import Callable
 from functools import cache, partial
 from typing import Any
 
+from tmpud.errors import SimulatorError
 from tmpud.experiments.processes import die_with, ending, exit_code, fork, threads
 from tmpud.experiments.tasks import DONE, ERROR, SIM_CRASH, Json, Work, located
 
@@ -44,7 +45,7 @@ def _do(group: Json, send: Send, descriptor: int) -> None:
     """Do a group of tasks, and end as the process ends that is forked for it, if one is."""
     try:
         work = _work(group["work"])
-        _check_threads()
+        _check_threads(work)
     except Exception as error:
         send({"unprepared": _message(error)})
         return
@@ -62,8 +63,7 @@ def _each(work: Work, prepare: Callable[[Work, str], Any], run: Run, group: Json
     began = time.monotonic()
     try:
         prepared = prepare(work, json.dumps(group["shared"]))
-        if work.isolated:
-            _check_threads()
+        _check_threads(work)
     except Exception as error:
         send({"unprepared": _message(error)})
         return
@@ -103,7 +103,8 @@ def _here(work: Work, prepared: Any, arguments: Json) -> Json:
         result = dict(work.run(prepared, arguments))
         json.dumps(result, allow_nan=False)
     except Exception as error:
-        return {"status": ERROR, "result": {"message": _message(error)}}
+        status = SIM_CRASH if isinstance(error, SimulatorError) else ERROR
+        return {"status": status, "result": {"message": _message(error)}}
     return {"status": DONE, "result": result}
 
 
@@ -135,8 +136,8 @@ def _send(connection: socket.socket, answer: Json) -> None:
     connection.sendall(json.dumps(answer, allow_nan=False).encode() + b"\n")
 
 
-def _check_threads() -> None:
-    if threads() > 1:
+def _check_threads(work: Work) -> None:
+    if work.isolated and threads() > 1:
         raise RuntimeError(f"{threads()} threads run where a process is to be forked, which would have only one")
 
 
