@@ -5,18 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from matplotlib import rc_context
+import matplotlib as mpl
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from tmpud.experiments.calibration import roc
+from tmpud.experiments.charts import COLOURS, LOOK, PAPER
 from tmpud.experiments.merge_scores import BASELINES
 from tmpud.experiments.predictions import Merges, Quality
 from tmpud.experiments.statistics import wilson
-from tmpud.viewer.picture import COLOURS
 
-GREY = "#9aa0a6"
 COLUMNS = 3  # of reliability diagrams beside the curves
 
 
@@ -31,7 +30,7 @@ def draw_calibration(found: Mapping[str, tuple[Merges, Sequence[Quality]]], file
         for place, (number, quality) in enumerate(with_bins[: 2 * COLUMNS]):
             panel = figure.add_subplot(grid[2 * row + place // COLUMNS, 2 + place % COLUMNS])
             _draw_reliability(panel, merges, quality, _style(number, quality.score)[0])
-    with rc_context({"svg.hashsalt": "tmpud"}):  # equal data give equal files
+    with mpl.rc_context(LOOK):
         for file in files:
             figure.savefig(file, dpi=110, metadata={"Date": None} if file.suffix == ".svg" else None)
 
@@ -63,7 +62,7 @@ def _draw_reliability(axes: Axes, merges: Merges, quality: Quality, colour: str)
     for found in quality.reliability:
         at = (found.predicted, found.unsafe)
         axes.annotate(f"{found.n}", at, (3, 4), textcoords="offset points", fontsize=7)
-    axes.axhline(float(merges.unsafe.mean()), color=GREY, linestyle=":", linewidth=1)
+    axes.axhline(float(merges.unsafe.mean()), color=PAPER, linestyle=":", linewidth=1)
     axes.set_title(f"{quality.score}\nBrier {quality.brier:.3f}", loc="left", fontsize=9)
     axes.set_xlabel("1 - Safe", fontsize=8)
     axes.set_ylabel("share unsafe", fontsize=8)
@@ -72,7 +71,7 @@ def _draw_reliability(axes: Axes, merges: Merges, quality: Quality, colour: str)
 
 
 def _square(axes: Axes) -> None:
-    axes.plot([0, 1], [0, 1], color=GREY, linewidth=1)
+    axes.plot([0, 1], [0, 1], color=PAPER, linewidth=1)
     axes.set_xlim(-0.02, 1.02)
     axes.set_ylim(-0.02, 1.02)
     axes.set_aspect("equal")
