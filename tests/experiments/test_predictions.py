@@ -1,12 +1,14 @@
+import json
 import math
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from tmpud.experiments.calibration_charts import draw_calibration
+from tmpud.experiments.calibration_report import calibration_report
 from tmpud.experiments.merge_scores import BASELINES
-from tmpud.experiments.predictions import BETAS, Merges, base_rate, gather, qualities, quality_table
+from tmpud.experiments.predictions import BETAS, Merges, base_rate, gather, qualities, quality_table, to_json
+from tmpud.experiments.report import write_report
 from tmpud.experiments.table import as_text
 from tmpud.experiments.tasks import DONE, ERROR, Record
 
@@ -77,11 +79,25 @@ def test_without_unsafe_merges_the_table_still_stands() -> None:
     assert "0 unsafe" in as_text(quality_table(calm, qualities(calm)))
 
 
-def test_the_charts_are_drawn_and_the_same_data_give_the_same_svg(tmp_path: Path) -> None:
+def test_numbers_are_kept_as_json_with_none_for_what_is_not_known() -> None:
+    merges = planted(30)
+    calm = Merges("town", merges.scores, np.zeros(30, dtype=np.bool_), merges.groups)
+    (kept,) = json.loads(json.dumps(to_json([(calm, qualities(calm))]), allow_nan=False))
+    assert (kept["source"], kept["n"], kept["unsafe"]) == ("town", 30, 0)
+    assert kept["scores"][0]["area"]["value"] is None
+
+
+def test_the_report_has_a_table_for_each_source_and_equal_findings_give_equal_files(tmp_path: Path) -> None:
     merges = planted(60)
-    measured = (merges, qualities(merges))
-    found = {"local": measured, "town": measured}
-    draw_calibration(found, [tmp_path / "a.svg", tmp_path / "a.png"])
-    draw_calibration(found, [tmp_path / "b.svg"])
-    assert (tmp_path / "a.svg").read_bytes() == (tmp_path / "b.svg").read_bytes()
-    assert (tmp_path / "a.png").stat().st_size > 10_000
+    found = [(merges, qualities(merges))] * 2
+    for name in ("a", "b"):
+        write_report(tmp_path / name, calibration_report(found, "tmpud paper calibration", {}))
+    text = (tmp_path / "a" / "report.md").read_text()
+    assert text.count("60 merges") == 2
+    for file in ("report.html", "calibration.svg"):
+        assert (tmp_path / "a" / file).read_bytes() == (tmp_path / "b" / file).read_bytes()
+
+
+def test_a_report_on_nothing_says_so() -> None:
+    report = calibration_report([], "tmpud paper calibration", {})
+    assert report.sections[0].lines == ("No merge was begun.",)

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from pathlib import Path
+from collections.abc import Sequence
 
 import matplotlib as mpl
 from matplotlib.axes import Axes
@@ -11,28 +10,32 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from tmpud.experiments.calibration import roc
-from tmpud.experiments.charts import COLOURS, LOOK, PAPER
+from tmpud.experiments.charts import COLOURS, LOOK, PAPER, saved
 from tmpud.experiments.merge_scores import BASELINES
-from tmpud.experiments.predictions import Merges, Quality
+from tmpud.experiments.predictions import Measured, Merges, Quality
+from tmpud.experiments.report import Picture
 from tmpud.experiments.statistics import wilson
 
+CAPTION = (
+    "ROC curves with the area under each, and reliability diagrams: how often merges were unsafe (Wilson's 95 % "
+    "intervals, number of merges) by the probability that 1 - Safe gave. Dotted: the share of all merges."
+)
 COLUMNS = 3  # of reliability diagrams beside the curves
 
 
-def draw_calibration(found: Mapping[str, tuple[Merges, Sequence[Quality]]], files: Sequence[Path]) -> None:
-    """Draw the same figure into PNG or SVG files; ``found`` holds what was measured, by source."""
-    figure = Figure(figsize=(14, 6.2 * len(found)), layout="constrained")
-    FigureCanvasAgg(figure)
-    grid = figure.add_gridspec(2 * len(found), COLUMNS + 2)
-    for row, (merges, qualities) in enumerate(found.values()):
-        _draw_roc(figure.add_subplot(grid[2 * row : 2 * row + 2, :2]), merges, qualities)
-        with_bins = [(number, quality) for number, quality in enumerate(qualities) if quality.reliability]
-        for place, (number, quality) in enumerate(with_bins[: 2 * COLUMNS]):
-            panel = figure.add_subplot(grid[2 * row + place // COLUMNS, 2 + place % COLUMNS])
-            _draw_reliability(panel, merges, quality, _style(number, quality.score)[0])
+def draw_calibration(found: Sequence[Measured]) -> Picture:
+    """Draw what was measured, two rows of panels for each source."""
     with mpl.rc_context(LOOK):
-        for file in files:
-            figure.savefig(file, dpi=110, metadata={"Date": None} if file.suffix == ".svg" else None)
+        figure = Figure(figsize=(14, 6.2 * len(found)), layout="constrained")
+        FigureCanvasAgg(figure)
+        grid = figure.add_gridspec(2 * len(found), COLUMNS + 2)
+        for row, (merges, qualities) in enumerate(found):
+            _draw_roc(figure.add_subplot(grid[2 * row : 2 * row + 2, :2]), merges, qualities)
+            with_bins = [(number, quality) for number, quality in enumerate(qualities) if quality.reliability]
+            for place, (number, quality) in enumerate(with_bins[: 2 * COLUMNS]):
+                panel = figure.add_subplot(grid[2 * row + place // COLUMNS, 2 + place % COLUMNS])
+                _draw_reliability(panel, merges, quality, _style(number, quality.score)[0])
+        return Picture("calibration", CAPTION, *saved(figure))
 
 
 def _style(number: int, score: str) -> tuple[str, str]:

@@ -54,6 +54,14 @@ class Quality:
     reliability: tuple[Bin, ...]  # of 1 - score; none where the score is no probability
 
 
+Measured = tuple[Merges, tuple[Quality, ...]]  # one source
+
+
+def measured(records: Iterable[Record]) -> tuple[Measured, ...]:
+    """Return the quality of every score on the merges of each source."""
+    return tuple((merges, qualities(merges)) for merges in gather(records))
+
+
 def gather(records: Iterable[Record]) -> tuple[Merges, ...]:
     """Return the merges of all drives that gave a result, by source: the first part of the record's key."""
     rows: dict[str, list[tuple[str, Mapping[str, Any]]]] = {}
@@ -110,6 +118,34 @@ def _lead(merges: Merges, name: str, first: str) -> Estimate:
 
     ends = interval(difference, both, merges.unsafe, merges.groups, np.random.default_rng(SEED))
     return Estimate(difference(both, merges.unsafe), *ends, len(both))
+
+
+def to_json(found: Iterable[Measured]) -> list[dict[str, Any]]:
+    """Return what was measured with None for what is not finite."""
+    return [
+        {
+            "source": merges.source,
+            "n": len(merges.unsafe),
+            "unsafe": int(merges.unsafe.sum()),
+            "base_rate_brier": base_rate(merges),
+            "scores": [_quality_json(quality) for quality in each],
+        }
+        for merges, each in found
+    ]
+
+
+def _quality_json(quality: Quality) -> dict[str, Any]:
+    return {
+        "score": quality.score,
+        "area": quality.area.to_json(),
+        "lead": quality.lead and quality.lead.to_json(),
+        "brier": quality.brier,
+        "recalibrated_brier": quality.recalibrated,
+        "refusals": [
+            {**each._asdict(), "unsafe": None if math.isnan(each.unsafe) else each.unsafe} for each in quality.refusals
+        ],
+        "reliability": [each._asdict() for each in quality.reliability],
+    }
 
 
 def quality_table(merges: Merges, found: Iterable[Quality]) -> Table:
