@@ -2,12 +2,26 @@ import json
 
 import pytest
 
+from tests.execution.scripted import Paths, ScriptedWorld
 from tests.safety.fakes import car, scene
+from tests.task.tiny_roads import driven, network, request, road
 from tmpud.events import Event, Executed, Finished, Judged
-from tmpud.experiments.merge_scenes import LocalMergeScenes, local_tasks, merge_rows, town_tasks
+from tmpud.execution.deliberation import Deliberation
+from tmpud.execution.tmpud import run_tmpud
+from tmpud.experiments.merge_scenes import (
+    WATCHED,
+    Eager,
+    LocalMergeScenes,
+    local_tasks,
+    merge_rows,
+    town_tasks,
+)
 from tmpud.experiments.merge_scores import SeenMerge
+from tmpud.presets import TMPUD
 from tmpud.scene import Outcome, Scene
 from tmpud.symbols import Action, State, Transition
+from tmpud.task.asp_planner import AspPlanner
+from tmpud.task.domain import Domain
 
 FIRST = Transition(State("a_0/0", 0), Action.MERGELEFT, State("a_1/1", 0))
 SECOND = Transition(State("a_1/1", 0), Action.MERGERIGHT, State("a_0/2", 0))
@@ -77,6 +91,29 @@ def test_tasks_are_told_apart_and_drives_share_towns() -> None:
     assert len({task.key for task in tasks}) == len(tasks) == 2 * 25 + 4 * 3
     assert len({json.dumps(task.shared) for task in tasks if task.shared}) == 2 * 2
     assert [task.digest for task in tasks[:2]] != [tasks[0].digest] * 2
+
+
+def eager_drive(seconds: float) -> ScriptedWorld:
+    """Drive a road of five segments from end to end eagerly, in a world in which every merge is said to be unsafe."""
+    roads, goal = network([road("a", 2, 300.0)], []), request("a_0/0", "a_0/4")
+    cost, domain = driven(roads), Domain(roads, goal)
+    world = ScriptedWorld(cost, lambda *_: 0.0, {}, seconds)
+    mind = Deliberation(goal, domain, AspPlanner(roads, TMPUD), Paths(cost=cost), world)
+    list(run_tmpud(domain.start_state(), mind, Eager()))
+    return world
+
+
+@pytest.mark.parametrize(("seconds", "merges"), [(WATCHED, 4), (WATCHED / 10, 2)])
+def test_an_eager_drive_merges_where_the_last_merge_had_its_time(seconds: float, merges: int) -> None:
+    """The plan has no merge; after one the plan has one back."""
+    world = eager_drive(seconds)
+    assert [step.action.is_merge for step in world.driven].count(True) == merges
+    assert world.driven[-1].next_state.segment == "a_0/4"
+
+
+def test_an_eager_drive_asks_about_every_merge_and_drives_it_whatever_the_answer() -> None:
+    world = eager_drive(WATCHED)
+    assert world.asked == world.driven
 
 
 def test_local_merges_become_rows_that_can_be_repeated_and_kept_as_json() -> None:

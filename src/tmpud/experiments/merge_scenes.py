@@ -24,10 +24,11 @@ from tmpud.roads.network import RoadNetwork
 from tmpud.runner import Mission, drive
 from tmpud.scene import Outcome
 from tmpud.simulators.sumo import SumoSimulator
-from tmpud.symbols import State, TaskPlan
+from tmpud.symbols import TaskPlan
 
 VIAS = 4  # random places on the way, so that a drive merges several times
 WATCHED = JudgingRules().merge_window  # [s]
+MOST_EXTRA = 2  # actions by which a merge that was not planned may lengthen the plan
 PER_TOWN = 20  # drives that start from the same running town
 
 
@@ -144,16 +145,18 @@ class Eager:
                 yield mind.estimated(step, mind.world.estimate(step))
             return plan
         due = mind.world.time - self._last >= WATCHED
-        return _by_way_of_a_merge(step.state, mind) or plan if due else plan
+        return _by_way_of_a_merge(plan, mind) if due else plan
 
 
-def _by_way_of_a_merge(state: State, mind: Deliberation) -> TaskPlan:
-    """Return a plan that begins with a merge; none where no merge can be driven or leads on to the goal."""
-    for way in mind.domain.successors(state):
+def _by_way_of_a_merge(plan: TaskPlan, mind: Deliberation) -> TaskPlan:
+    """Return a plan that begins with a merge, or the plan itself where none can be driven without a long way round."""
+    for way in mind.domain.successors(plan[0].state):
         if way.action.is_merge and math.isfinite(mind.world.path_length(way)):
             with contextlib.suppress(NoPlanError):
-                return (way, *mind.plan(way.next_state))
-    return ()
+                found = (way, *mind.plan(way.next_state))
+                if len(found) <= len(plan) + MOST_EXTRA:
+                    return found
+    return plan
 
 
 def merge_rows(seen: Iterable[SeenMerge], log: Sequence[Event]) -> list[dict[str, Any]]:
