@@ -15,13 +15,13 @@ from tmpud.events import Event, Finished, Header
 from tmpud.execution.baselines import communication
 from tmpud.execution.deliberation import ALTERNATIVES, Deliberation
 from tmpud.execution.timing import Stopwatch
-from tmpud.execution.tmpud import run_tmpud
+from tmpud.execution.tmpud import Communicate, run_tmpud
 from tmpud.execution.worlds import SimulatedWorld
 from tmpud.judging.judge import Judge
 from tmpud.motion.mapping import StateMapping
 from tmpud.motion.planner import LaneMotionPlanner
 from tmpud.presets import Preset, preset_named
-from tmpud.protocols import Simulator
+from tmpud.protocols import SafetyEstimator, Simulator
 from tmpud.roads.loading import load_map
 from tmpud.roads.network import RoadNetwork
 from tmpud.roads.places import request as service_request
@@ -60,6 +60,7 @@ class Mission:
 
 
 SimulatorFactory = Callable[[RoadNetwork, Mission], Simulator]
+EstimatorFactory = Callable[[Preset, LaneMotionPlanner, RoadNetwork], SafetyEstimator]
 
 
 def sumo(network: RoadNetwork, mission: Mission) -> Simulator:
@@ -76,29 +77,31 @@ def drive(
     stopwatch: Stopwatch | None = None,
     frames: bool = True,
     alternatives: int = ALTERNATIVES,
+    communicate: Communicate | None = None,
+    estimator: EstimatorFactory = SafeSetEstimator,
 ) -> Iterator[Event]:
     """Run one mission and yield its events, from Header to Finished.
 
-    The same mission gives the same events. ``frames`` and ``alternatives``, how many other plans are listed beside
-    each one, are for people to look at: the drive is the same without them. Raises MapError, RequestError or
-    SimulatorError for what cannot be run.
+    ``communicate`` takes the place of what the mission's algorithm does in lines 5 to 7 of Algorithm 2. The same
+    mission gives the same events; ``frames`` and ``alternatives``, how many other plans are listed beside each one,
+    are for people to look at. Raises MapError, RequestError or SimulatorError for what cannot be run.
     """
     preset = preset_named(mission.preset)
-    communicate = communication(mission.algorithm, mission.beta)
+    communicate = communicate or communication(mission.algorithm, mission.beta)
     network = load_map(mission.map, preset.segment_length)
     request = mission.request(network)
     watch = stopwatch or Stopwatch()
     mapping = StateMapping(network, request, preset, mission.seed)
     motion = LaneMotionPlanner(network, mapping)
     planner = AspPlanner(network, preset)
-    estimator = SafeSetEstimator(preset, motion, network)
+    safety = estimator(preset, motion, network)
     planner.solve = watch.timed("plan", planner.solve)  # type: ignore[method-assign]
-    estimator.estimate = watch.timed("estimate", estimator.estimate)  # type: ignore[method-assign]
+    safety.estimate = watch.timed("estimate", safety.estimate)  # type: ignore[method-assign]
     judge = Judge(network)
     town = simulator(network, mission)
     try:
         rng = np.random.default_rng(mission.seed)
-        world = SimulatedWorld(network, town, mapping, motion, estimator, judge, rng, frames=frames)
+        world = SimulatedWorld(network, town, mapping, motion, safety, judge, rng, frames=frames)
         domain = Domain(network, request)
         start = domain.start_state()
         world.enter(*mapping(start))

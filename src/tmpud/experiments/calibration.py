@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from tmpud.scene import FloatArray
 
 Truth = NDArray[np.bool_]  # (n,) whether the merge was unsafe
-RESAMPLES = 2000
+RESAMPLES = 1000
 FOLDS = 10
 
 

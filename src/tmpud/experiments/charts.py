@@ -103,7 +103,7 @@ def draw(panels: Sequence[Panel], reference: Reference, name: str, caption: str)
         figure.draw_without_rendering()
         for axes, panel, those in zip(drawn, panels, labels, strict=True):
             _spread(axes, panel, reference, those)
-        return Picture(name, caption, *_saved(figure))
+        return Picture(name, caption, *saved(figure))
 
 
 def _batch_points(paired: Paired) -> Iterable[Point]:
@@ -210,7 +210,8 @@ def _drawable(name: str) -> str:
     return shown if len(shown) <= LONGEST else f"{shown[: LONGEST - 3]}..."
 
 
-def _saved(figure: Figure) -> tuple[str, bytes]:
+def saved(figure: Figure) -> tuple[str, bytes]:
+    """Return a figure as SVG and as PNG; to be called within LOOK."""
     svg, png = io.StringIO(), io.BytesIO()
     figure.savefig(svg, format="svg", metadata={"Date": None})
     figure.savefig(png, format="png", dpi=160)

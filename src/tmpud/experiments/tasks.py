@@ -63,6 +63,8 @@ WORK: dict[str, str] = {  # name -> "module:class", imported where it is run
     "full": "tmpud.experiments.full:FullTrials",
     "abstract": "tmpud.experiments.abstract_trials:AbstractTrials",
     "learn": "tmpud.experiments.learning:LearningRuns",
+    "merge scenes": "tmpud.experiments.merge_scenes:MergeScenes",
+    "local merge scenes": "tmpud.experiments.merge_scenes:LocalMergeScenes",
 }
 
 
