@@ -74,7 +74,7 @@ def test_a_free_neighbour_changes_its_speed_by_no_more_than_its_factor(
 def test_the_ego_moves_as_its_dynamics_say_and_is_seen_by_its_front_bumper(dense: LocalRoads) -> None:
     road, scene = next(iter(dense.scenes.items()))
     steering = 0.1 if scene.ego.lane == "road0_0" else -0.1
-    seen = []
+    seen: list[str] = []
     while abs(scene.ego.pose.y) > 0.1 and len(seen) < 100:
         dense.step({road: Control(0.0, steering)})
         scene = dense.scenes[road]
