@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import shlex
-import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -12,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from tmpud.cli.options import TOWN, Json, Map
+from tmpud.cli.running import run_tasks
 
 if TYPE_CHECKING:
     from tmpud.experiments.kinds import Findings
@@ -72,6 +71,55 @@ def figure4(
     _experiment("figure4", asked.to_json(), asked.tasks(), out, jobs=jobs, as_json=as_json)
 
 
+@paper_app.command()
+def calibration(
+    merges: Annotated[int, typer.Option(min=0, max=100_000, help="Local ones, for each road condition.")] = 400,
+    drives: Annotated[int, typer.Option(min=0, max=100_000, help="In the town, for each density.")] = 60,
+    first_seed: Annotated[int, typer.Option(min=0, help="Seed of the first drive.")] = 60_000,
+    map_: Map = TOWN,
+    jobs: Jobs = 2,
+    out: Folder = None,
+    as_json: Json = False,
+) -> None:
+    """Measure how well Safe foretells an unsafe merge, beside gap, time to collision and RSS distance."""
+    from tmpud.experiments.calibration_report import calibration_report, calibration_tasks
+    from tmpud.experiments.predictions import measured, quality_table, to_json
+    from tmpud.experiments.report import write_report
+    from tmpud.experiments.store import provenance
+    from tmpud.experiments.table import as_text
+
+    options = {"merges": merges, "drives": drives, "first_seed": first_seed, "map": map_}
+    tasks = calibration_tasks(merges, drives, first_seed, map_)
+    folder, results = run_tasks("calibration", options, tasks, out, jobs=jobs)
+    found = measured(results.records)
+    files = write_report(folder, calibration_report(found, results.manifest["command"], provenance(results)))
+    typer.echo(json.dumps(to_json(found)) if as_json else "\n\n".join(as_text(quality_table(*pair)) for pair in found))
+    typer.echo(f"wrote {', '.join(file.name for file in files)} to {folder}", err=True)
+
+
+@app.command()
+def learn_world(
+    merges: Annotated[int, typer.Option(min=1, max=1_000_000, help="Forced merges for each road condition.")] = 2000,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of places, speeds and accelerations.")] = 2024,
+    jobs: Jobs = 2,
+    out: Annotated[Path, typer.Option(help="The file to write; FILE.runs keeps what was run.")] = Path("world.json"),
+) -> None:
+    """Learn the abstract simulation's world models by forcing merges in a small area of the full simulator."""
+    from datetime import UTC, datetime
+
+    from tmpud.experiments.learning import tasks, to_json, world
+
+    options = {"merges": merges, "seed": seed}
+    _, results = run_tasks("learn-world", options, tasks(merges, seed), out.with_name(out.name + ".runs"), jobs=jobs)
+    command, time = results.manifest["command"], datetime.now(UTC).isoformat(timespec="seconds")
+    learned = world(results.records, merges=merges, seed=seed, command=command, time=time)
+    out.write_text(to_json(learned), encoding="utf-8")
+    for condition, row in learned["conditions"].items():
+        shares = ", ".join(f"{name} {share['value']:.3f}" for name, share in row["outcomes"].items())
+        typer.echo(f"{condition}: {shares}")
+    typer.echo(f"wrote {out}", err=True)
+
+
 @app.command()
 def sweep(
     file: Annotated[Path, typer.Argument(metavar="FILE.yaml", help="maps, missions, traffic, algorithms, ...")],
@@ -114,39 +162,17 @@ def results(
 def _experiment(
     name: str, options: Mapping[str, Any], tasks: Sequence[Task], out: Path | None, *, jobs: int, as_json: bool
 ) -> None:
-    """Run what is left of an experiment, write its report, and say what came out."""
-    from tmpud.experiments.campaign import run_campaign
+    """Run what is left of an experiment of trials, write its report, and say what came out."""
     from tmpud.experiments.export import write_rows
     from tmpud.experiments.kinds import findings
-    from tmpud.experiments.manifest import Experiment
-    from tmpud.experiments.progress import Progress
     from tmpud.experiments.report import write_report
-    from tmpud.experiments.store import read_results
-    from tmpud.experiments.tasks import digest
-    from tmpud.experiments.workers import Limits
 
-    folder = out or Path("results") / f"{name}-{digest(options)[:8]}"
-    typer.echo(f"{name}: {len(tasks)} tasks, {jobs} at a time, into {folder}", err=True)
-    experiment = Experiment(name=name, options=options, command=_command())
-    for _ in run_campaign(folder, experiment, tasks, limits=Limits(jobs=jobs), progress=Progress(name, len(tasks))):
-        pass
-    found = findings(read_results(folder))
+    folder, results = run_tasks(name, options, tasks, out, jobs=jobs)
+    found = findings(results)
     write_rows(found.rows, folder / "trials.csv")
     files = write_report(folder, found.report())
     _tell(found, as_json=as_json)
     typer.echo(f"wrote {', '.join(file.name for file in files)}, trials.csv to {folder}", err=True)
-
-
-def _command() -> str:
-    """Return the command that repeats this one, wherever its results go and however many work on it."""
-    words = iter(["tmpud", *sys.argv[1:]])
-    kept: list[str] = []
-    for word in words:
-        if word in ("--out", "--jobs"):
-            next(words, None)
-        elif word != "--json" and not word.startswith(("--out=", "--jobs=")):
-            kept.append(word)
-    return shlex.join(kept)
 
 
 def _tell(found: Findings, *, as_json: bool) -> None:
@@ -159,12 +185,8 @@ def _tell(found: Findings, *, as_json: bool) -> None:
     typer.echo(as_text(analysis.table(found.kind.title)))
     if analysis.findings:
         typer.echo("\n" + as_text(findings_table(analysis.findings)))
-    for line in (
-        "",
-        *verdicts(analysis.findings),
-        "",
-        f"results {found.hash}, {len(found.results.records)} tasks done",
-    ):
+    done = f"results {found.hash}, {len(found.results.records)} tasks done"
+    for line in ("", *verdicts(analysis.findings), "", done):
         typer.echo(line)
 
 

@@ -15,6 +15,7 @@ from tmpud.presets import preset_named
 from tmpud.protocols import Simulator
 from tmpud.roads.loading import load_map
 from tmpud.runner import Mission, drive, sumo
+from tmpud.simulators import sumo_process
 
 RISKY = 0.5  # a merge driven below this Safe was a risk that the algorithm knew of
 
@@ -30,6 +31,10 @@ class FullTrials:
     """Trials by several algorithms in the very same traffic: each goes on from one running town, in its own process."""
 
     isolated = True
+
+    def __init__(self) -> None:
+        """Import the simulator once for all towns that are forked from this process."""
+        sumo_process.imported()
 
     def prepare(self, shared: Json) -> Town:
         """Return the town once its traffic flows."""

@@ -17,7 +17,7 @@ from tmpud.experiments.grid import rows as grid_rows
 from tmpud.experiments.paper_numbers import FIGURE4, TABLE1, Reference
 from tmpud.experiments.report import Picture, Report
 from tmpud.experiments.rows import TrialRow
-from tmpud.experiments.store import Results
+from tmpud.experiments.store import Results, provenance
 from tmpud.experiments.table1 import DEVIATIONS as TABLE1_DEVIATIONS
 from tmpud.experiments.tasks import Record, results_hash
 
@@ -81,7 +81,7 @@ class Findings:
             self.analysis,
             title=self.kind.title,
             command=manifest["command"],
-            run=self._run(),
+            run=provenance(self.results),
             pictures=(self.picture(),),
             deviations=self.kind.deviations,
         )
@@ -93,18 +93,6 @@ class Findings:
         panels = batch_panels(self.analysis.pairs) if self.kind.batches else interval_panels(self.analysis.cells)
         bars = "one standard deviation over the batches" if self.kind.batches else "95 % intervals"
         return draw(panels, self.kind.reference, "figure", f"Distance against unsafe trials; bars: {bars}.")
-
-    def _run(self) -> dict[str, str]:
-        manifest = self.results.manifest
-        tasks = manifest["tasks"]
-        return {
-            "begun": manifest["begun"],
-            **{name: str(value) for name, value in manifest["options"].items()},
-            "versions": ", ".join(f"{name} {version}" for name, version in manifest["versions"].items()),
-            "code": manifest["code"],
-            "tasks": f"{len(self.results.records)} of {tasks['count']} done (digest {tasks['digest']})",
-            "results": self.hash,
-        }
 
 
 def findings(results: Results) -> Findings:

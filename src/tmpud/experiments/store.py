@@ -15,7 +15,7 @@ from typing import IO, Any, Self
 from tmpud.errors import FolderError
 from tmpud.experiments import lines
 from tmpud.experiments.manifest import Experiment, claim, describe, read_manifest, sync_folder
-from tmpud.experiments.tasks import Json, Record, Task
+from tmpud.experiments.tasks import Json, Record, Task, results_hash
 
 RESULTS = "results.jsonl"
 TIMING = "timing.jsonl"  # wall-clock times, in no hash
@@ -44,6 +44,20 @@ def read_results(folder: Path) -> Results:
         contents = lines.read(file)
     records, refused = lines.counted(file, contents)
     return Results(manifest, tuple(records.values()), (*contents.damages, *refused))
+
+
+def provenance(results: Results) -> dict[str, str]:
+    """Return what a report says of what was run."""
+    manifest = results.manifest
+    tasks = manifest["tasks"]
+    return {
+        "begun": manifest["begun"],
+        **{name: str(value) for name, value in manifest["options"].items()},
+        "versions": ", ".join(f"{name} {version}" for name, version in manifest["versions"].items()),
+        "code": manifest["code"],
+        "tasks": f"{len(results.records)} of {tasks['count']} done (digest {tasks['digest']})",
+        "results": results_hash(results.records),
+    }
 
 
 class Store:

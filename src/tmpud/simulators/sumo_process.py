@@ -17,13 +17,19 @@ OPTIONS = (
 )  # fmt: skip
 
 
-def start(network: RoadNetwork, seed: int, collision_action: str = "none") -> ModuleType:
-    """Load the network into libsumo; what it says on import goes to stderr."""
+def imported() -> ModuleType:
+    """Return libsumo; SimulatorError where it is missing. What it says on import goes to stderr."""
     with contextlib.redirect_stdout(sys.stderr):
         try:
             import libsumo
         except ImportError as error:
             raise SimulatorError(f"libsumo cannot be imported ({error}): pip install libsumo") from error
+    return libsumo  # type: ignore[no-any-return]
+
+
+def start(network: RoadNetwork, seed: int, collision_action: str = "none") -> ModuleType:
+    """Load the network into libsumo; what it says on import goes to stderr."""
+    libsumo = imported()
     if not Path(network.source).is_file():
         raise SimulatorError(f"{network.name}: SUMO needs the map's file, and {network.source!r} is none")
     if libsumo.isLoaded():
