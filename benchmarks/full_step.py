@@ -19,7 +19,7 @@ from collections.abc import Callable, Sequence
 from importlib.metadata import version
 from multiprocessing.connection import Connection
 from statistics import median
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 from tmpud.roads import RoadNetwork, load_map
 from tmpud.runner import Mission, drive
@@ -32,6 +32,7 @@ FIRST_SEED = 500
 SETTERS = ("setRoute", "moveToXY", "setSpeed")  # what a drive tells SUMO of vehicles
 VERSIONS = ("tmpud", "libsumo", "numpy", "clingo")
 
+Town = TypeVar("Town", bound=SumoSimulator)
 Told = tuple[str, tuple[Any, ...], dict[str, Any]]  # a function of libsumo.vehicle and its arguments
 
 
@@ -66,14 +67,18 @@ def watched_drive(mission: Mission, before_step: Callable[[], None]) -> Watched:
     towns: list[Watched] = []
 
     def town(network: RoadNetwork, mission: Mission) -> Watched:
-        towns.append(Watched(network, traffic=mission.traffic, seed=mission.seed))
+        towns.append(_town(Watched, network, mission))
         towns[0].before_step = before_step
         return towns[0]
 
     with contextlib.suppress(EnoughError):
-        for _ in drive(mission, simulator=town, frames=False):
+        for _ in drive(mission, simulator=town, frames=False, alternatives=0):
             pass
     return towns[0]
+
+
+def _town(kind: type[Town], network: RoadNetwork, mission: Mission) -> Town:
+    return kind(network, traffic=mission.traffic, seed=mission.seed, request=mission.request(network))
 
 
 def tape(mission: Mission, steps: int) -> Tape:
@@ -124,14 +129,14 @@ class Turn:
 
 def bare(mission: Mission, played: Tape, turn: Turn) -> None:
     """Step the town without the ego."""
-    with SumoSimulator(load_map(mission.map), traffic=mission.traffic, seed=mission.seed):
+    with _town(SumoSimulator, load_map(mission.map), mission):
         others_only = [[told for told in step if told[1][0] != EGO_ID] for step in played.steps]
         _replay(others_only, turn, read=False)
 
 
 def with_ego(mission: Mission, played: Tape, turn: Turn) -> None:
     """Step the town with the ego as it was moved, and read its context subscription."""
-    with SumoSimulator(load_map(mission.map), traffic=mission.traffic, seed=mission.seed) as town:
+    with _town(SumoSimulator, load_map(mission.map), mission) as town:
         town.reset(*played.start)
         _replay(played.steps, turn, read=True)
 
