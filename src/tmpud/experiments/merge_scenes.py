@@ -14,6 +14,7 @@ import numpy as np
 from tmpud.errors import NoPlanError, SimulatorError
 from tmpud.events import Event, Executed, Finished, Judged
 from tmpud.execution.deliberation import Deliberation
+from tmpud.experiments.full import FullTrials, Town
 from tmpud.experiments.local_merges import CONDITIONS, ROADS, LocalArea, local_merges, local_network
 from tmpud.experiments.merge_scores import PRESETS, MergePanel, SeenMerge
 from tmpud.experiments.tasks import SIM_CRASH, Json, Task
@@ -21,15 +22,13 @@ from tmpud.judging.rules import JudgingRules, Kind
 from tmpud.presets import TMPUD
 from tmpud.roads.loading import load_map
 from tmpud.roads.network import RoadNetwork
-from tmpud.runner import Mission, drive
+from tmpud.runner import drive
 from tmpud.scene import Outcome
-from tmpud.simulators.sumo import SumoSimulator
 from tmpud.symbols import TaskPlan
 
 VIAS = 4  # random places on the way, so that a drive merges several times
 WATCHED = JudgingRules().merge_window  # [s]
 MOST_EXTRA = 2  # actions by which a merge that was not planned may lengthen the plan
-PER_TOWN = 20  # drives that start from the same running town
 
 
 def town_tasks(
@@ -44,8 +43,16 @@ def town_tasks(
         Task(
             key=f"{map_}/{vehicles}/{seed}",
             work="merge scenes",
-            shared={"map": map_, "traffic": vehicles, "seed": seed - (seed - first_seed) % PER_TOWN},
-            arguments={"seed": seed, "presets": list(presets)},
+            shared={
+                "map": map_,
+                "start": "random",
+                "goal": "random",
+                "via": ["random"] * VIAS,
+                "algorithm": "no-com",
+                "traffic": vehicles,
+                "seed": seed,
+            },
+            arguments={"presets": list(presets)},
         )
         for vehicles in traffic
         for seed in range(first_seed, first_seed + drives)
@@ -66,35 +73,18 @@ def local_tasks(merges: int, first_seed: int, presets: Sequence[str] = PRESETS) 
     ]
 
 
-class MergeScenes:
-    """One eager drive; its result holds a row for each merge that was begun."""
+class MergeScenes(FullTrials):
+    """One eager drive in a town; its result holds a row for each merge that was begun."""
 
-    isolated = True  # a town is used up by driving in it
-
-    def prepare(self, shared: Json) -> tuple[Json, SumoSimulator]:
-        """Return a running town."""
-        town = SumoSimulator(load_map(shared["map"]), traffic=shared["traffic"], seed=shared["seed"])
-        return shared, town
-
-    def run(self, prepared: tuple[Json, SumoSimulator], arguments: Json) -> Json:
-        """Drive one random mission in the town; the rows are as ``merge_rows`` says."""
-        shared, town = prepared
+    def run(self, prepared: Town, arguments: Json) -> Json:
+        """Drive the town's mission; the rows are as ``merge_rows`` says."""
+        mission, town = prepared
         panels: list[MergePanel] = []
 
         def panel(_: Any, motion: Any, network: Any) -> MergePanel:
-            networks = partial(load_map, shared["map"])
-            panels.append(MergePanel(arguments["presets"], motion, network, networks))
+            panels.append(MergePanel(arguments["presets"], motion, network, partial(load_map, mission.map)))
             return panels[-1]
 
-        mission = Mission(
-            map=shared["map"],
-            start="random",
-            goal="random",
-            via=("random",) * VIAS,
-            algorithm="no-com",
-            traffic=shared["traffic"],
-            seed=arguments["seed"],
-        )
         events = drive(mission, simulator=lambda *_: town, frames=False, communicate=Eager(), estimator=panel)
         log = list(events)
         end = next(event for event in log if isinstance(event, Finished))
