@@ -39,4 +39,4 @@ def start(network: RoadNetwork, seed: int, collision_action: str = "none") -> Mo
         libsumo.start(["sumo", *options, *OPTIONS])
     except Exception as error:  # libsumo's own class cannot be named before it is imported
         raise SimulatorError(f"SUMO does not start on {network.source}: {error}") from error
-    return libsumo  # type: ignore[no-any-return]
+    return libsumo
