@@ -43,7 +43,7 @@ class SumoSimulator:
         *,
         traffic: int,
         seed: int,
-        warm_up: float = 60.0,
+        warm_up: float = 180.0,
         request: ServiceRequest | None = None,
         rules: TrafficRules | None = None,
     ) -> None:
@@ -126,8 +126,8 @@ class SumoSimulator:
 
     def _appear(self, lane: str, station: float) -> Scene:
         pose = self._network.lanes[lane].centre.pose_at(station)
-        flow = self._take_over(Spot(lane, station))
-        if flow is None:
+        car = self._await(Spot(lane, station))
+        if car is None:
             self._clear(pose)
         edge = self._network.lanes[lane].edge
         index = self._network.lanes[lane].index
@@ -140,11 +140,13 @@ class SumoSimulator:
         self._sumo.vehicle.setLaneChangeMode(EGO_ID, 0)
         room = self._network.lanes[lane].length - station - self._limits.length
         speed = min(self._rules.wished_speed, self._network.lanes[lane].speed, math.sqrt(2 * GENTLE * max(room, 0.0)))
-        speed = speed if flow is None else min(speed, flow)
+        speed = min(speed, self._sumo.vehicle.getSpeed(car)) if car else speed
         self._way, self._roads = [(lane, self._network.lanes[lane].centre)], [edge]
         self._ego = VehicleState(EGO_ID, pose, lane, speed=speed, length=self._limits.length, width=self._limits.width)
         self._place(self._ego)
         self._advance()
+        if car:  # not sooner, or another would change lanes into the gap
+            self._cars.move(car, pose, self.everyone())
         self._sumo.vehicle.subscribeContext(
             EGO_ID, self._sumo.CMD_GET_VEHICLE_VARIABLE, SENSING_RANGE, self._reader.fields
         )
@@ -152,16 +154,14 @@ class SumoSimulator:
         self._advance()
         return self._scene()
 
-    def _take_over(self, spot: Spot) -> float | None:
-        """Wait for a car that passes the ego's place, move it elsewhere and return its speed; None where none comes.
+    def _await(self, spot: Spot) -> str | None:
+        """Wait for a car that passes the ego's place and return it; None where none comes.
 
-        So the ego begins as one of the cars in the flow, and not in a gap that is long enough to appear in.
+        The ego takes its place, and begins as one of the cars in the flow, not in a gap long enough to appear in.
         """
         for _ in range(round(PATIENCE / DT) if self._sumo.vehicle.getIDCount() else 0):
             if name := self._cars.passing(spot):
-                speed = float(self._sumo.vehicle.getSpeed(name))
-                self._cars.move(name, self._network.lanes[spot.lane].centre.pose_at(spot.station), self.everyone())
-                return speed
+                return name
             self._advance()
         return None
 

@@ -35,7 +35,7 @@ class Spot(NamedTuple):
 class TrafficRules:
     """Where the others drive and how. Grounds, and what was tried: docs/experiments.md, Traffic."""
 
-    local: float = 70.0  # [1/km] cars per km of the mission's lanes whose trips lead to its roads; the rest go anywhere
+    local: float = 55.0  # [1/km] cars per km of the mission's lanes whose trips lead to its roads; the rest go anywhere
     detour: float = 200.0  # [m] a road is of the mission where the way by it is at most so much longer
     wished_speed: float = WISHED_SPEED  # [m/s] the paper's (Sec. V)
     spread: float = SPREAD
