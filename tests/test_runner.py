@@ -149,7 +149,7 @@ def test_among_five_hundred_vehicles_an_estimate_takes_less_than_a_second() -> N
     run = drive(packed, simulator=make, stopwatch=watch)
     frame = next(event for event in run if isinstance(event, Frame))
     run.close()  # type: ignore[attr-defined]
-    assert len(frame.ids) == 500
+    assert len(frame.ids) == 499  # the ego took the place of one
     assert watch.summary()["estimate"]["max"] < 1000
 
 
