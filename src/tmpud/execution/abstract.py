@@ -91,10 +91,11 @@ class AbstractWorld:
 
 
 _HERE = Trajectory(np.zeros(1), np.zeros((1, 3)), np.zeros(1))
+_NOBODY = np.ones((0, 1)), np.ones(0)  # o and o* of no vehicle
 
 
 def _estimate(safe: float) -> SafetyEstimate:
-    return SafetyEstimate(safe, None, safe, (), np.ones((0, 1)), np.ones(0), _HERE, _HERE.times)
+    return SafetyEstimate(safe, None, safe, (), *_NOBODY, _HERE, _HERE.times)
 
 
 _CERTAIN = _estimate(1.0)

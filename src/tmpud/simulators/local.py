@@ -22,15 +22,15 @@ from tmpud.errors import SimulatorError
 from tmpud.geometry import Pose
 from tmpud.roads.sumo_net import read_sumo_net
 from tmpud.scene import Control, Scene, Vehicles, VehicleState
+from tmpud.simulators.cars import TYPE
 from tmpud.simulators.local_roads import APART, LANES, WIDTH, lane_name, road_name, write_net
 from tmpud.simulators.sumo import JOINT
 from tmpud.simulators.sumo_process import start
 from tmpud.simulators.sumo_reader import DT, EGO_ID, SumoReader
-from tmpud.simulators.traffic import SPREAD, WISHED_SPEED
+from tmpud.simulators.traffic import TrafficRules
 
 CAR_LENGTH = 5.0  # [m] of SUMO's default car
-MIN_GAP = 4.0  # [m] bumper to bumper in a queue, as in the full simulation
-KEEP_RIGHT = 0.0  # SUMO's lcKeepRight, as in the full simulation
+TRAFFIC = TrafficRules()  # the cars are those of the full simulation
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,8 +39,7 @@ class PlacementLaw:
 
     ego_station: float = 79.0  # [m] so that the decision comes at about the middle of a segment
     reach: float = 25.0  # [m] neighbours are uniform within so much before and behind the ego, on either lane
-    gap: float = MIN_GAP  # [m] at least, between bumpers in one lane
-    spread: float = SPREAD  # share of the wished speed by which drivers differ, either way
+    gap: float = TRAFFIC.min_gap  # [m] at least, between bumpers in one lane
     redraw: float = 1.0  # [s] after so long each neighbour draws a new acceleration factor
     slowest: float = 0.4  # share of the wished speed below which nobody wishes to drive
     fastest: float = 1.6
@@ -147,7 +146,8 @@ class LocalRoads:
 
     def _define_types(self) -> None:
         types = self._sumo.vehicletype
-        types.setMinGap("DEFAULT_VEHTYPE", MIN_GAP)
+        types.copy("DEFAULT_VEHTYPE", TYPE)
+        types.setMinGap(TYPE, TRAFFIC.min_gap)
         types.copy("DEFAULT_VEHTYPE", "ego")
         types.setLength("ego", EGO.length)
         types.setWidth("ego", EGO.width)
@@ -159,19 +159,19 @@ class LocalRoads:
         pose = Pose(self._law.ego_station, y, 0.0)
         self._origins[road], name = origin, road_name(road)
         self._egos[road] = VehicleState(
-            EGO_ID, pose, lane_name(0, origin), speed=WISHED_SPEED, length=EGO.length, width=EGO.width
+            EGO_ID, pose, lane_name(0, origin), speed=TRAFFIC.wished_speed, length=EGO.length, width=EGO.width
         )
         self._sumo.route.add(name, [name])
         front = self._law.ego_station + EGO.length / 2
-        self._add(_ego_id(road), road, origin, front, WISHED_SPEED, "ego")
+        self._add(_ego_id(road), road, origin, front, TRAFFIC.wished_speed, "ego")
         self._sumo.vehicle.setSpeedMode(_ego_id(road), 0)
         self._sumo.vehicle.setLaneChangeMode(_ego_id(road), 0)
         self._neighbours[road] = []
         for number, (lane, centre) in enumerate(self._places(origin)):
-            wish = WISHED_SPEED * self._rng.uniform(1 - self._law.spread, 1 + self._law.spread)
+            wish = TRAFFIC.wished_speed * self._rng.uniform(1 - TRAFFIC.spread, 1 + TRAFFIC.spread)
             neighbour = _Neighbour(f"{name}.{number}", wish)
-            self._add(neighbour.id, road, lane, centre + CAR_LENGTH / 2, wish, "DEFAULT_VEHTYPE")
-            self._sumo.vehicle.setParameter(neighbour.id, "laneChangeModel.lcKeepRight", str(KEEP_RIGHT))
+            self._add(neighbour.id, road, lane, centre + CAR_LENGTH / 2, wish, TYPE)
+            self._sumo.vehicle.setParameter(neighbour.id, "laneChangeModel.lcKeepRight", str(TRAFFIC.keep_right))
             self._neighbours[road].append(neighbour)
 
     def _add(self, vehicle: str, road: int, lane: int, front: float, speed: float, kind: str) -> None:
@@ -196,7 +196,7 @@ class LocalRoads:
         """Let each neighbour's wished speed drift by its acceleration factor."""
         law, bound = self._law, self._condition.acceleration
         redraw = self._steps % round(law.redraw / DT) == 0
-        low, high = law.slowest * WISHED_SPEED, law.fastest * WISHED_SPEED
+        low, high = law.slowest * TRAFFIC.wished_speed, law.fastest * TRAFFIC.wished_speed
         for neighbours in self._neighbours.values():
             for car in neighbours:
                 if redraw:
