@@ -20,7 +20,7 @@ class Preset:
     name: str
 
     # Utility (Sec. III)
-    gamma: float = 2500.0  # [m] weight of the safety term
+    gamma: float = 4500.0  # [m] weight of the safety term
     constant_term: bool = False  # charge every action gamma/2 even where Safe is 1, as the formula literally does
     turn_cost: float = 0.0  # [m] added for each left or right turn
 
@@ -62,6 +62,7 @@ TMPUD = Preset(name="tmpud")
 
 PAPER = Preset(
     name="paper",
+    gamma=2500.0,
     constant_term=True,
     aggregate="max+mean",
     lane_keeping="all vehicles",
@@ -75,6 +76,7 @@ PAPER = Preset(
 
 RELEASED = Preset(
     name="released",
+    gamma=2500.0,
     turn_cost=25.0,
     estimated="merges",
     share="sampled",

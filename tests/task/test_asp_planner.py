@@ -8,7 +8,7 @@ from tests.task.agreement import Case, random_case
 from tests.task.oracle import order, simple_plans, triple
 from tests.task.tiny_roads import driven, grid, link, network, request, road, two_blocks
 from tmpud.errors import NoPlanError
-from tmpud.presets import PAPER, TMPUD
+from tmpud.presets import PAPER, Preset, preset_named
 from tmpud.symbols import Action, LazyCost, OptimisticSafe, Place, ServiceRequest, State, TaskPlan, Transition
 from tmpud.task.asp_planner import AspPlanner
 
@@ -38,14 +38,13 @@ def test_the_worked_case_merges_early_then_late_then_goes_round_the_block() -> N
     assert round_the_block.penalty_m == 0.0
 
 
-@pytest.mark.parametrize(("preset", "block"), [(TMPUD, 140.0), (PAPER, 100.0)])
-def test_an_unsafe_merge_is_taken_where_the_block_costs_more(preset: object, block: float) -> None:
+@pytest.mark.parametrize(("preset", "block"), [(HALF, 140.0), (PAPER, 100.0)])
+def test_an_unsafe_merge_is_taken_where_the_block_costs_more(preset: Preset, block: float) -> None:
     roads, safe = two_blocks(block), OptimisticSafe()
     safe[AREA_1] = safe[AREA_2] = 0.0
-    chosen = PAPER if preset is PAPER else TMPUD
-    report = AspPlanner(roads, chosen).solve(HOME, request("a_0/0", "goal_0/0"), driven(roads), safe)
+    report = AspPlanner(roads, preset).solve(HOME, request("a_0/0", "goal_0/0"), driven(roads), safe)
     assert actions(report.plan) == "mergeleft forward forward turnleft"
-    assert report.penalty_m == pytest.approx(577.65 + 1250.0 * 4 * chosen.constant_term, abs=0.01)
+    assert report.penalty_m == pytest.approx(577.65 + 1250.0 * 4 * preset.constant_term, abs=0.01)
 
 
 def test_the_literal_formula_charges_half_gamma_for_every_further_action() -> None:

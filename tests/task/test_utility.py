@@ -20,7 +20,7 @@ MERGE = Transition(State("a_0/0", 0), Action.MERGELEFT, State("a_1/1", 0))
 def test_the_penalty_falls_with_safety_and_presets_differ_by_half_gamma(a: float, b: float) -> None:
     low, high = sorted((a, b))
     assert penalty(low, TMPUD) >= penalty(high, TMPUD) >= 0
-    assert penalty(a, PAPER) - penalty(a, TMPUD) == pytest.approx(1250)
+    assert penalty(a, PAPER) - penalty(a, RELEASED) == pytest.approx(1250)
     assert penalty(a, PAPER) == pytest.approx(2500 / (1 + math.exp(a - 1)))
 
 

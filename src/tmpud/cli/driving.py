@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 app = typer.Typer()
 
-DEMO_SEED, DEMO_TRAFFIC = 22, 200
+DEMO_SEED, DEMO_TRAFFIC = 16, 200
 
 
 @app.command()

@@ -35,7 +35,8 @@ class Spot(NamedTuple):
 class TrafficRules:
     """Where the others drive and how. Grounds, and what was tried: docs/experiments.md, Traffic."""
 
-    local: float = 55.0  # [1/km] cars per km of the mission's lanes whose trips lead to its roads; the rest go anywhere
+    local: float = 48.0  # [1/km] cars per km of the mission's lanes whose trips lead to its roads; the rest go anywhere
+    most_local: int = 45  # ... and not more, or all who drive the same way round end in a gridlock
     detour: float = 200.0  # [m] a road is of the mission where the way by it is at most so much longer
     wished_speed: float = WISHED_SPEED  # [m/s] the paper's (Sec. V)
     spread: float = SPREAD
@@ -62,10 +63,9 @@ class Circulation:
         self._graph = _road_graph(network)
         self._backwards = _reversed(self._graph)
         self._roads = _circular_part(self._graph)
-        rules = rules or TrafficRules()
-        wanted = _roads_of_interest(self._graph, network, request, rules.detour) if request else ()
+        self._rules = rules or TrafficRules()
+        wanted = _roads_of_interest(self._graph, network, request, self._rules.detour) if request else ()
         self._everywhere, self._mission = tuple(sorted(self._roads)), tuple(sorted(self._roads.intersection(wanted)))
-        self._local = rules.local
         self._spots = tuple(
             Spot(lane, SPACING * (i + 0.7))
             for road in self._everywhere
@@ -77,7 +77,7 @@ class Circulation:
     def locals_among(self, count: int) -> int:
         """Return how many of some cars stay where the mission goes."""
         length = sum(self._network.lanes[lane].length for road in self._mission for lane in self._network.edges[road])
-        return min(round(self._local * length / 1000), count)
+        return min(round(self._rules.local * length / 1000), self._rules.most_local, count)
 
     def walk(self, road: str, length: int = AHEAD, *, local: bool = False) -> list[str]:
         """Return trips that go on after a road, at least ``length`` roads; none where it leads to no destination."""
