@@ -8,11 +8,12 @@ from tests.task.agreement import Case, random_case
 from tests.task.oracle import order, simple_plans, triple
 from tests.task.tiny_roads import driven, grid, link, network, request, road, two_blocks
 from tmpud.errors import NoPlanError
-from tmpud.presets import PAPER, Preset, preset_named
+from tmpud.presets import PAPER, TMPUD, Preset, preset_named
 from tmpud.symbols import Action, LazyCost, OptimisticSafe, Place, ServiceRequest, State, TaskPlan, Transition
 from tmpud.task.asp_planner import AspPlanner
 
 HOME = State("a_0/0", 0)
+HALF = preset_named("tmpud:gamma=2500")  # at most 578 m of penalty
 
 AREA_1 = Transition(HOME, Action.MERGELEFT, State("a_1/1", 0))
 AREA_2 = Transition(State("b_0/0", 0), Action.MERGELEFT, State("b_1/1", 0))
