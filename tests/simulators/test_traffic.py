@@ -74,11 +74,23 @@ def test_the_number_of_local_cars_depends_on_the_missions_lanes_and_not_on_how_m
     assert circulation(roads).locals_among(120) == 0
 
 
+def test_local_cars_are_limited_on_long_missions_and_none_go_round_a_single_road() -> None:
+    roads = load_map("millbrook")
+    rules = TrafficRules()
+
+    def local(start: str, goal: str, vehicles: int) -> int:
+        return Circulation(roads, random.Random(1), request(roads, start, (goal,)), rules).locals_among(vehicles)
+
+    assert local("quay1e_0", "north3e", 200) == rules.most_local
+    assert local("quay1e_0", "north3e", 20) == 20
+    assert local("park1e_0", "park1e", 200) == 0
+
+
 def test_a_greater_detour_makes_more_roads_the_missions() -> None:
     roads = load_map("millbrook")
     lengths = []
     for detour in (0.0, 350.0, 700.0):
-        rules = TrafficRules(detour=detour, local=1.0)
+        rules = TrafficRules(detour=detour, local=10.0, most_local=1000)
         lengths.append(around_the_mission(roads, rules).locals_among(1000))
     assert lengths == sorted(set(lengths))
 
@@ -87,7 +99,7 @@ def test_a_mission_by_way_of_other_places_is_followed_leg_by_leg() -> None:
     names = "abcd"
     links = [link(f"{x}_0", f"{y}_0") for x, y in zip(names, "bcda", strict=True)]
     ring = network([road(name, 1, 100.0) for name in names], links)
-    rules = TrafficRules(local=10.0, detour=0.0)
+    rules = TrafficRules(local=10.0, detour=0.0)  # one car on each lane of 100 m
 
     def mission_lanes(*vias: str) -> int:
         return Circulation(ring, random.Random(1), request(ring, "a", ("b",), vias), rules).locals_among(1000)

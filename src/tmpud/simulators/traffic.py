@@ -75,7 +75,9 @@ class Circulation:
         self._to_go: dict[str, dict[str, float]] = {}  # destination -> road -> way from that road's end [m]
 
     def locals_among(self, count: int) -> int:
-        """Return how many of some cars stay where the mission goes."""
+        """Return how many of some cars stay where the mission goes: none on a single road, which all would go round."""
+        if len(self._mission) < 2:
+            return 0
         length = sum(self._network.lanes[lane].length for road in self._mission for lane in self._network.edges[road])
         return min(round(self._rules.local * length / 1000), self._rules.most_local, count)
 
