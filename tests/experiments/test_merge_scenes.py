@@ -78,6 +78,7 @@ def test_a_row_says_what_was_predicted_and_what_came_of_it() -> None:
     assert row == {
         "time": 10.0,
         "speed": 5.0,
+        "neighbours": 0,
         "action": "mergeleft",
         "to": "a_1/1",
         "scores": {"tmpud": 0.5},

@@ -91,7 +91,7 @@ def test_the_report_has_a_table_for_each_source_and_equal_findings_give_equal_fi
     merges = planted(60)
     found = [(merges, qualities(merges))] * 2
     for name in ("a", "b"):
-        write_report(tmp_path / name, calibration_report(found, "tmpud paper calibration", {}))
+        write_report(tmp_path / name, calibration_report(found, (), "tmpud paper calibration", {}))
     text = (tmp_path / "a" / "report.md").read_text()
     assert text.count("60 merges") == 2
     for file in ("report.html", "calibration.svg"):
@@ -99,5 +99,5 @@ def test_the_report_has_a_table_for_each_source_and_equal_findings_give_equal_fi
 
 
 def test_a_report_on_nothing_says_so() -> None:
-    report = calibration_report([], "tmpud paper calibration", {})
+    report = calibration_report([], (), "tmpud paper calibration", {})
     assert report.sections[0].lines == ("No merge was begun.",)

@@ -83,17 +83,23 @@ def calibration(
 ) -> None:
     """Measure how well Safe foretells an unsafe merge, beside gap, time to collision and RSS distance."""
     from tmpud.experiments.calibration_report import calibration_report, calibration_tasks
+    from tmpud.experiments.local_world import read_world
     from tmpud.experiments.predictions import measured, quality_table, to_json
     from tmpud.experiments.report import write_report
     from tmpud.experiments.store import provenance
     from tmpud.experiments.table import as_text
+    from tmpud.experiments.world_check import check_table, checks
 
     options = {"merges": merges, "drives": drives, "first_seed": first_seed, "map": map_}
     tasks = calibration_tasks(merges, drives, first_seed, map_)
     folder, results = run_tasks("calibration", options, tasks, out, jobs=jobs)
-    found = measured(results.records)
-    files = write_report(folder, calibration_report(found, results.manifest["command"], provenance(results)))
-    typer.echo(json.dumps(to_json(found)) if as_json else "\n\n".join(as_text(quality_table(*pair)) for pair in found))
+    found, worlds = measured(results.records), checks(results.records, read_world())
+    files = write_report(folder, calibration_report(found, worlds, results.manifest["command"], provenance(results)))
+    if as_json:
+        typer.echo(json.dumps({"sources": to_json(found), "worlds": [check.to_json() for check in worlds]}))
+    else:
+        tables = [*(quality_table(*pair) for pair in found), check_table(worlds)]
+        typer.echo("\n\n".join(map(as_text, tables)))
     typer.echo(f"wrote {', '.join(file.name for file in files)} to {folder}", err=True)
 
 

@@ -9,6 +9,7 @@ from tmpud.experiments.merge_scores import PRESETS
 from tmpud.experiments.predictions import Measured, quality_table
 from tmpud.experiments.report import Report, Section
 from tmpud.experiments.tasks import Task
+from tmpud.experiments.world_check import Check, check_table
 
 FIRST_SEED = 60_000  # parameters were looked for on seeds from 61,000 on
 MERGES = 400  # local ones for each road condition
@@ -35,14 +36,16 @@ def calibration_tasks(
     return [*town_tasks(drives, first_seed, map_, presets=presets), *local_tasks(merges, first_seed, presets)]
 
 
-def calibration_report(found: Sequence[Measured], command: str, run: Mapping[str, str]) -> Report:
-    """Return the report on what was measured; without merges it says so."""
+def calibration_report(
+    found: Sequence[Measured], worlds: Sequence[Check], command: str, run: Mapping[str, str]
+) -> Report:
+    """Return the report on what was measured, and on what the learned worlds foretold; without merges it says so."""
     from tmpud.experiments.calibration_charts import draw_calibration
 
     tables = [quality_table(merges, qualities) for merges, qualities in found]
     picture = (draw_calibration(found),) if found else ()
     sections = [
         Section(title="What was measured", lines=NOTES if found else ("No merge was begun.",), pictures=picture),
-        *(Section(title=table.title, table=table) for table in tables),
+        *(Section(title=table.title, table=table) for table in [*tables, check_table(worlds)]),
     ]
     return Report(title="How well Safe foretells an unsafe merge", command=command, run=run, sections=tuple(sections))

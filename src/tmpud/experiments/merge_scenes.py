@@ -18,6 +18,7 @@ from tmpud.experiments.full import FullTrials, Town
 from tmpud.experiments.local_merges import CONDITIONS, ROADS, LocalArea, local_merges, local_network
 from tmpud.experiments.merge_scores import PRESETS, MergePanel, SeenMerge
 from tmpud.experiments.tasks import SIM_CRASH, Json, Task
+from tmpud.experiments.world_check import neighbours_of
 from tmpud.judging.rules import JudgingRules, Kind
 from tmpud.presets import TMPUD
 from tmpud.roads.loading import load_map
@@ -173,6 +174,7 @@ def _row(merge: SeenMerge, outcome: str) -> dict[str, Any]:
     return {
         "time": merge.scene.time,
         "speed": round(merge.scene.ego.speed, 3),
+        "neighbours": neighbours_of(merge.scene),
         "action": merge.step.action.value,
         "to": merge.step.next_state.segment,
         "scores": dict(merge.scores),
