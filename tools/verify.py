@@ -16,7 +16,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import fields
 from pathlib import Path
 
-from tools.verification import agreement, faults, missions, runs
+from tools.verification import agreement, faults, missions, paper, runs
 from tools.verification.figures import ROOT, Figure, keep, provenance, section
 from tools.verification.options import Options
 
@@ -33,7 +33,11 @@ SECTIONS: dict[str, Callable[[Options], list[Figure]]] = {
     "kills": faults.kills,
     "traffic": runs.traffic,
     "repeat": runs.repeat,
+    "figure4": paper.figure4,
+    "calibration": paper.calibration,
+    "same-results": paper.same_results,
     "missions": missions.missions,
+    "table1": paper.table1,
 }  # the quick ones first
 USED = {
     "plans": ("graphs",),
@@ -48,7 +52,11 @@ USED = {
     "kills": ("kills",),
     "traffic": ("seconds",),
     "repeat": ("repeats", "traffic"),
+    "figure4": ("figure_trials",),
+    "calibration": (),
+    "same-results": ("same_trials",),
     "missions": ("missions", "traffic", "given_maps"),
+    "table1": ("table_trials",),
 }  # the options that change a section
 
 

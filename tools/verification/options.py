@@ -28,6 +28,9 @@ class Options:
     disks: int = 100  # campaigns that run out of disk
     meetings: int = 50  # of two supervisors on a folder
     damages: int = 1_000
+    table_trials: int = 200  # per algorithm and density
+    figure_trials: int = 4_000  # per algorithm and road condition
+    same_trials: int = 20  # per algorithm and density, each way
     hangs: int = 100  # tasks that crash, hang or answer nonsense
 
     @property
