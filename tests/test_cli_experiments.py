@@ -21,6 +21,11 @@ def tmpud(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
 
 
+def _heed_interrupts() -> None:
+    """Undo what a shell does to its background jobs."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 @pytest.fixture(scope="module")
 def swept(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return a folder in which a sweep was driven."""
@@ -87,7 +92,9 @@ def test_the_figure_is_drawn_from_a_few_trials(tmp_path: Path) -> None:
 def test_an_interrupted_table_goes_on_where_it_stopped(tmp_path: Path) -> None:
     (tmp_path / "sweep.yaml").write_text(SWEEP.replace("[1, 2]", "[1, 2, 3, 4]"))
     command = [sys.executable, "-m", "tmpud.cli", "sweep", "sweep.yaml", "--out", "run", "--jobs", "2"]
-    running = subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True, start_new_session=True)
+    running = subprocess.Popen(
+        command, cwd=tmp_path, stderr=subprocess.PIPE, text=True, start_new_session=True, preexec_fn=_heed_interrupts
+    )
     results = tmp_path / "run" / "results.jsonl"
     until = time.monotonic() + 120
     while not (results.exists() and results.stat().st_size) and time.monotonic() < until:

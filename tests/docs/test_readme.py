@@ -13,15 +13,28 @@ import pytest
 README = (Path(__file__).resolve().parents[2] / "README.md").read_text()
 BIN = Path(sys.executable).parent
 COMMANDS = re.findall(r"^\.venv/bin/(tmpud .*)$", README, re.MULTILINE)
+LONG = [
+    command for command in COMMANDS if command.split()[1] in ("paper", "learn-world", "results")
+]  # or need a result
 
 
-@pytest.mark.parametrize("command", COMMANDS)
+@pytest.mark.parametrize("command", [command for command in COMMANDS if command not in LONG])
 def test_a_command_runs(command: str, tmp_path: Path) -> None:
     words = shlex.split(command, comments=True)
     done = subprocess.run([BIN / words[0], *words[1:]], capture_output=True, text=True, check=False, cwd=tmp_path)
     assert "Traceback" not in done.stderr
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout
+
+
+@pytest.mark.parametrize("command", LONG)
+def test_an_experiment_has_the_options_it_is_told_with(command: str) -> None:
+    words = shlex.split(command, comments=True)
+    names = [
+        word for word in words[1:3] if word in ("paper", "table1", "figure4", "calibration", "learn-world", "results")
+    ]
+    told = subprocess.run([BIN / "tmpud", *names, "--help"], capture_output=True, text=True, check=True).stdout
+    assert all(word in told for word in words if word.startswith("--"))
 
 
 def test_the_python_code_runs(tmp_path: Path) -> None:

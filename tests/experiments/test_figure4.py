@@ -22,12 +22,12 @@ BLIND = ("cm", "1 1")  # ... and here it does not
 
 @pytest.fixture
 def write(tmp_path: Path) -> Any:
-    def written(samples: tuple[str, str]) -> Path:
+    def written(samples: tuple[str, str]) -> str:
         condition = {"samples": {"outcome": samples[0], "safe": {"tmpud": samples[1]}}}
         path = tmp_path / f"{samples[0]}.json"
         world = {"format": FORMAT, "presets": {"tmpud": preset_fields(TMPUD)}}
         path.write_text(json.dumps({**world, "conditions": dict.fromkeys(CONDITIONS, condition)}))
-        return path
+        return str(path)
 
     return written
 

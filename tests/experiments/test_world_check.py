@@ -1,7 +1,8 @@
 import pytest
 
+from tmpud.experiments.merge_scores import neighbours_of
 from tmpud.experiments.tasks import DONE, SIM_HANG, Record
-from tmpud.experiments.world_check import check_table, checks, neighbours_of
+from tmpud.experiments.world_check import check_table, checks
 from tmpud.geometry import Pose
 from tmpud.scene import Scene, Vehicles, VehicleState
 

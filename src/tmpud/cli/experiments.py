@@ -66,7 +66,13 @@ def figure4(
     from tmpud.experiments.local_world import SHIPPED
 
     asked = Figure4(
-        map=map_, missions=missions, trials=trials, batches=batches, preset=preset, seed=seed, world=world or SHIPPED
+        map=map_,
+        missions=missions,
+        trials=trials,
+        batches=batches,
+        preset=preset,
+        seed=seed,
+        world=str(world) if world else SHIPPED,
     )
     _experiment("figure4", asked.to_json(), asked.tasks(), out, jobs=jobs, as_json=as_json)
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Generator, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, NamedTuple
 
 from tmpud.errors import NoPlanError
@@ -58,7 +57,7 @@ class AbstractTrials:
         """Return map, missions and learned model."""
         preset = preset_named(shared["preset"])
         network = load_map(shared["map"], preset.segment_length)
-        world = read_world(Path(shared["world"]))
+        world = read_world(shared["world"])
         ways = tuple(_way(network, preset, route, seed) for seed, route in enumerate(shared["routes"], shared["seed"]))
         samples = {name: joint_sample(world, name, preset) for name in world["conditions"]}
         return Ground(ways, samples)

@@ -12,7 +12,8 @@ from tmpud.errors import RunFileError
 from tmpud.execution.abstract import COLLIDE, MERGE, STOP, JointSample
 from tmpud.presets import Preset
 
-SHIPPED = Path(__file__).parent.parent / "worlds" / "local.json"
+SHIPPED = "shipped"
+_SHIPPED_FILE = Path(__file__).parent.parent / "worlds" / "local.json"
 FORMAT = "tmpud local world 1"
 CONDITIONS = tuple(f"{d} density, {a} acceleration" for d in ("low", "high") for a in ("low", "high"))
 ESTIMATE = (  # the fields of a preset that decide about Safe
@@ -23,8 +24,9 @@ ESTIMATE = (  # the fields of a preset that decide about Safe
 LETTERS = {"m": MERGE, "c": COLLIDE, "s": STOP}
 
 
-def read_world(path: Path = SHIPPED) -> dict[str, Any]:
-    """Return the content of a learned world; RunFileError where the file holds none."""
+def read_world(name: str | Path = SHIPPED) -> dict[str, Any]:
+    """Return the shipped world, or that of a file; RunFileError where the file holds none."""
+    path = _SHIPPED_FILE if name == SHIPPED else Path(name)
     try:
         world = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:

@@ -16,9 +16,8 @@ from tmpud.events import Event, Executed, Finished, Judged
 from tmpud.execution.deliberation import Deliberation
 from tmpud.experiments.full import FullTrials, Town
 from tmpud.experiments.local_merges import CONDITIONS, ROADS, LocalArea, local_merges, local_network
-from tmpud.experiments.merge_scores import PRESETS, MergePanel, SeenMerge
+from tmpud.experiments.merge_scores import PRESETS, MergePanel, SeenMerge, neighbours_of
 from tmpud.experiments.tasks import SIM_CRASH, Json, Task
-from tmpud.experiments.world_check import neighbours_of
 from tmpud.judging.rules import JudgingRules, Kind
 from tmpud.presets import TMPUD
 from tmpud.roads.loading import load_map

@@ -17,11 +17,16 @@ from tmpud.roads.network import RoadNetwork
 from tmpud.safety.estimator import SafeSetEstimator, SafetyEstimate
 from tmpud.safety.gaps import merge_gaps
 from tmpud.scene import Scene
+from tmpud.simulators.local import PlacementLaw
 from tmpud.symbols import Place, ServiceRequest, State, Transition
 
 PRESETS = ("tmpud", "tmpud:aggregate=max+mean", "paper", "released")
 LEAST = "min o"  # of the first preset: the least share of safe controls at any instant
 BASELINES = ("gap", "time to collision", "RSS ratio")
+
+REACH = PlacementLaw().reach  # [m] a neighbour is within so much before or behind the ego, as the worlds were learned
+BESIDE = 4.8  # [m] across: one and a half lanes
+SAME_WAY = math.radians(45.0)
 
 Scores = Mapping[str, float | None]  # None: nothing is in the way, safer than any number (JSON has no infinity)
 Networks = Callable[[float], RoadNetwork]  # the map cut into segments of at most this length [m]
@@ -86,3 +91,13 @@ def _view(
     anywhere = Place("anywhere", (next(iter(own.segments)),))
     mapping = StateMapping(own, ServiceRequest(anywhere, (anywhere,)), preset)
     return SafeSetEstimator(preset, LaneMotionPlanner(own, mapping), own), own
+
+
+def neighbours_of(scene: Scene) -> int:
+    """Return how many vehicles surround the ego in the area in which the worlds were learned."""
+    ego, others = scene.ego.pose, scene.others
+    dx, dy = others.x - ego.x, others.y - ego.y
+    along = dx * math.cos(ego.heading) + dy * math.sin(ego.heading)
+    across = dy * math.cos(ego.heading) - dx * math.sin(ego.heading)
+    turned = np.abs(np.angle(np.exp(1j * (others.heading - ego.heading))))
+    return int(np.sum((np.abs(along) <= REACH) & (np.abs(across) <= BESIDE) & (turned <= SAME_WAY)))

@@ -52,12 +52,22 @@ def provenance(results: Results) -> dict[str, str]:
     tasks = manifest["tasks"]
     return {
         "begun": manifest["begun"],
-        **{name: str(value) for name, value in manifest["options"].items()},
+        **{name: _said(value) for name, value in manifest["options"].items()},
         "versions": ", ".join(f"{name} {version}" for name, version in manifest["versions"].items()),
         "code": manifest["code"],
         "tasks": f"{len(results.records)} of {tasks['count']} done (digest {tasks['digest']})",
         "results": results_hash(results.records),
     }
+
+
+def _said(value: Any) -> str:
+    """Return an option as text; whole numbers that follow one another as "first..last"."""
+    if not isinstance(value, list):
+        return str(value)
+    first = value[0] if value else None
+    if isinstance(first, int) and len(value) > 2 and value == list(range(first, first + len(value))):
+        return f"{value[0]}..{value[-1]}"
+    return ", ".join(map(str, value))
 
 
 class Store:

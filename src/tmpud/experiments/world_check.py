@@ -7,21 +7,14 @@ drivers have none of their own.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
 
-import numpy as np
-
+from tmpud.experiments.merge_scores import REACH
 from tmpud.experiments.statistics import Estimate, wilson
 from tmpud.experiments.table import NOTHING, Table
 from tmpud.experiments.tasks import DONE, Record
-from tmpud.scene import Scene
-from tmpud.simulators.local import PlacementLaw
 
-REACH = PlacementLaw().reach  # [m] before and behind the ego, as the worlds were learned
-BESIDE = 4.8  # [m] across: one and a half lanes
-SAME_WAY = math.radians(45.0)
 DENSITIES = {1: "low density", 3: "high density"}  # neighbours -> how the learned conditions begin
 
 
@@ -39,16 +32,6 @@ class Check(NamedTuple):
 
     def to_json(self) -> dict[str, Any]:
         return {**self._asdict(), "seen": self.seen.to_json(), "holds": self.holds}
-
-
-def neighbours_of(scene: Scene) -> int:
-    """Return how many vehicles surround the ego in the area in which the worlds were learned."""
-    ego, others = scene.ego.pose, scene.others
-    dx, dy = others.x - ego.x, others.y - ego.y
-    along = dx * math.cos(ego.heading) + dy * math.sin(ego.heading)
-    across = dy * math.cos(ego.heading) - dx * math.sin(ego.heading)
-    turned = np.abs(np.angle(np.exp(1j * (others.heading - ego.heading))))
-    return int(np.sum((np.abs(along) <= REACH) & (np.abs(across) <= BESIDE) & (turned <= SAME_WAY)))
 
 
 def checks(records: Iterable[Record], world: Mapping[str, Any]) -> tuple[Check, ...]:
