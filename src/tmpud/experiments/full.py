@@ -80,7 +80,6 @@ def summary(events: Iterable[Event]) -> dict[str, Any]:
         "travel_time": round(end.travel_time, 3),
         "unsafe": bool(collisions["merge"] or stops),
         "collisions": {name: n for name, n in sorted(collisions.items()) if n},
-        "merge_collisions": collisions["merge"],
         "forced_stops": stops,
         "hard_brakings": kinds[Kind.HARD_BRAKING],
         "violations": int(end.metrics["violations"]),
