@@ -166,7 +166,7 @@ def test_the_first_look_by_circles_leaves_out_nobody_who_is_in_the_way(monkeypat
     rng, route = np.random.default_rng(1), turn_left()
     scenes = [Scene(0.0, EGO_AT_START, Vehicles.of([beside(route, rng)]), {}) for _ in range(2000)]
     found = [leader(scene, route, 0.0) for scene in scenes]
-    monkeypatch.setattr(speed, "_near", lambda scene, _: np.arange(len(scene.others)))
+    monkeypatch.setattr(speed, "_near", lambda scene, *_: np.arange(len(scene.others)))
     assert found == [leader(scene, route, 0.0) for scene in scenes]
     assert 200 < sum(one is None for one in found) < 1800
 

@@ -6,6 +6,7 @@ their order. They go over a socket of their own: whatever simulators print goes 
 
 from __future__ import annotations
 
+import gc
 import importlib
 import json
 import os
@@ -67,6 +68,8 @@ def _each(work: Work, prepare: Callable[[Work, str], Any], run: Run, group: Json
     except Exception as error:
         send({"unprepared": _message(error)})
         return
+    if work.isolated:
+        gc.freeze()  # what all tasks share: no child looks for garbage there
     send({"prepared": time.monotonic() - began})
     for task in group["tasks"]:
         began = time.monotonic()

@@ -32,7 +32,8 @@ class Gate:
 class Route:
     """A smooth path to the goal pose and beyond, with what governs the speed on it."""
 
-    points: FloatArray  # (P, 2) [m], SPACING apart
+    x: FloatArray  # (P,) [m] of points SPACING apart
+    y: FloatArray  # (P,) [m]
     headings: FloatArray  # (P,) [rad]
     curvature: FloatArray  # (P,) [1/m], positive to the left
     speed_limit: FloatArray  # (P,) [m/s] what road, vehicle and the curves ahead allow
@@ -42,27 +43,27 @@ class Route:
 
     @property
     def length(self) -> float:
-        return (len(self.points) - 1) * SPACING
+        return (len(self.x) - 1) * SPACING
 
     def index(self, station: float) -> int:
-        return min(max(round(station / SPACING), 0), len(self.points) - 1)
+        return min(max(round(station / SPACING), 0), len(self.x) - 1)
 
     def pose_at(self, station: float) -> Pose:
         """Return the pose at a station, between the points by straight lines."""
-        place = min(max(station / SPACING, 0.0), len(self.points) - 1.001)
+        place = min(max(station / SPACING, 0.0), len(self.x) - 1.001)
         i = int(place)
         share = place - i
-        x, y = self.points[i] + share * (self.points[i + 1] - self.points[i])
+        x, y = (float(of[i] + share * (of[i + 1] - of[i])) for of in (self.x, self.y))
         turn = wrap_angle(float(self.headings[i + 1] - self.headings[i]))
-        return Pose(float(x), float(y), wrap_angle(float(self.headings[i]) + share * turn))
+        return Pose(x, y, wrap_angle(float(self.headings[i]) + share * turn))
 
     def project(self, x: float, y: float, near: float | None = None) -> tuple[float, float]:
         """Return (station, offset to the left) of a point [m]; with ``near``, only within 8 m of that station."""
-        low, high = 0, len(self.points)
+        low, high = 0, len(self.x)
         if near is not None:
             low, high = max(self.index(near - 8.0), 0), self.index(near + 8.0) + 1
-        dx, dy = x - self.points[low:high, 0], y - self.points[low:high, 1]
-        i = int(np.argmin(dx * dx + dy * dy))
+        dx, dy = x - self.x[low:high], y - self.y[low:high]
+        i = int((dx * dx + dy * dy).argmin())
         heading = float(self.headings[low + i])
         along = float(dx[i]) * math.cos(heading) + float(dy[i]) * math.sin(heading)
         across = float(dy[i]) * math.cos(heading) - float(dx[i]) * math.sin(heading)
@@ -110,9 +111,9 @@ def _sampled(
     count = max(int(line.length / SPACING) + 1, 3)
     stations: FloatArray = np.arange(count, dtype=np.float64) * SPACING
     raw = np.array([line.pose_at(float(s))[:2] for s in stations])
-    points = _smooth(raw)
-    headings = np.unwrap(np.arctan2(np.gradient(points[:, 1]), np.gradient(points[:, 0])))
-    steps = np.hypot(np.gradient(points[:, 0]), np.gradient(points[:, 1]))
+    x, y = np.ascontiguousarray(_smooth(raw).T)
+    headings = np.unwrap(np.arctan2(np.gradient(y), np.gradient(x)))
+    steps = np.hypot(np.gradient(x), np.gradient(y))
     curvature = np.gradient(headings) / np.maximum(steps, 1e-6)
     allowed = np.minimum(
         _limits_at(stations, limit),
@@ -121,7 +122,7 @@ def _sampled(
     allowed = np.minimum(allowed, limits.max_speed)
     for i in range(count - 2, -1, -1):  # brake in time for what comes
         allowed[i] = min(allowed[i], math.sqrt(allowed[i + 1] ** 2 + 2 * COMFORTABLE_BRAKING * SPACING))
-    return Route(points, headings, curvature, allowed, end, gates, crossing)
+    return Route(x, y, headings, curvature, allowed, end, gates, crossing)
 
 
 def _limits_at(stations: FloatArray, limit: list[tuple[float, float]]) -> FloatArray:

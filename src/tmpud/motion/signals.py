@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
 from tmpud.roads.network import LaneConnection, RoadNetwork
 from tmpud.scene import Scene
@@ -16,9 +17,13 @@ class SignalClock:
     def __init__(self, network: RoadNetwork) -> None:
         self._network = network
         self._switched: dict[str, tuple[str, float]] = {}  # light -> its letters and since when it shows them [s]
+        self._seen: Mapping[str, str] | None = None  # the signals of the last scene
 
     def observe(self, scene: Scene) -> None:
         """Take note of the lights that switched; to be called at every step."""
+        if scene.signals is self._seen:
+            return
+        self._seen = scene.signals
         for light, letters in scene.signals.items():
             if light not in self._network.signals:
                 continue  # nothing is known of its program

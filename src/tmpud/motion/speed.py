@@ -36,7 +36,7 @@ def leader(scene: Scene, route: Route, station: float) -> Obstacle | None:
     """Return the nearest vehicle ahead whose box reaches into the ego's way, within LOOK_AHEAD metres."""
     ego, others = scene.ego, scene.others
     first, last = route.index(station), route.index(station + LOOK_AHEAD + ego.length) + 1
-    near = _near(scene, route.points[first:last:COARSE])
+    near = _near(scene, route.x[first:last:COARSE], route.y[first:last:COARSE])
     if not near.size:
         return None
     along, across, angle = _beside(route, first, last, *_rims(others, near))
@@ -64,13 +64,13 @@ def _rear(box: tuple[list[float], list[float]], reach: float) -> float:
     return min(s if abs(d) < reach else middle for s, d in zip(along, across, strict=True))
 
 
-def _near(scene: Scene, way: FloatArray) -> NDArray[np.intp]:
-    """Return which vehicles on the ego's level have a circle that comes near the way ahead (P, 2), and a few more."""
+def _near(scene: Scene, x: FloatArray, y: FloatArray) -> NDArray[np.intp]:
+    """Return which vehicles on the ego's level have a circle that comes near the way ahead (P,), and a few more."""
     ego, others = scene.ego, scene.others
     reach = (np.hypot(others.length, others.width) + ego.width) / 2 + SIDE_ROOM + COARSE * SPACING
-    dx, dy = others.x[:, None] - way[:, 0], others.y[:, None] - way[:, 1]
-    near = (dx * dx + dy * dy).min(axis=1) < reach * reach
-    return np.flatnonzero(near & (np.abs(others.z - ego.z) < SAME_LEVEL))
+    near: NDArray[np.bool_] = np.minimum.reduce(_squared_distance(others.x, others.y, x, y), axis=-1) < reach * reach
+    near &= np.abs(others.z - ego.z) < SAME_LEVEL
+    return near.nonzero()[0]
 
 
 def _rims(others: Vehicles, which: NDArray[np.intp]) -> tuple[FloatArray, FloatArray]:
@@ -90,12 +90,20 @@ def _beside(
 
     The third array (N,) is the route's heading beside each row's first point [rad].
     """
-    part = route.points[first:last]
-    dx, dy = x[..., None] - part[:, 0], y[..., None] - part[:, 1]
-    nearest = (dx * dx + dy * dy).argmin(axis=-1)
-    dx, dy, angle = x - part[nearest, 0], y - part[nearest, 1], route.headings[first + nearest]
+    nearest = _squared_distance(x, y, route.x[first:last], route.y[first:last]).argmin(axis=-1)
+    at = first + nearest
+    dx, dy, angle = x - route.x[at], y - route.y[at], route.headings[at]
     cos, sin = np.cos(angle), np.sin(angle)
     return nearest * SPACING + dx * cos + dy * sin, dy * cos - dx * sin, angle[:, 0]
+
+
+def _squared_distance(x: FloatArray, y: FloatArray, way_x: FloatArray, way_y: FloatArray) -> FloatArray:
+    """Return the squared distance of each point (...) from each point of a way (P,), as (..., P) [m^2]."""
+    dx, dy = np.subtract.outer(x, way_x), np.subtract.outer(y, way_y)
+    dx *= dx
+    dy *= dy
+    dx += dy
+    return dx
 
 
 def acceleration(route: Route, station: float, speed: float, obstacles: list[Obstacle], stop: float | None) -> float:

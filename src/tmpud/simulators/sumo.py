@@ -29,6 +29,7 @@ EXTEND_EVERY = 100  # steps between looks at the cars' routes
 CYCLE = 90.0  # [s] about one cycle of the lights
 PATIENCE = 60.0  # [s] simulated
 JOINT = 0.3  # [m] two lanes that meet are equally near to a point this near to their joint
+NEXT_LANES = 4  # how many of the announced lanes the ego may be on within one step
 GENTLE = 2.0  # [m/s^2] braking
 
 
@@ -60,7 +61,8 @@ class SumoSimulator:
         self._ego: VehicleState | None = None
         self._steps = 0
         self._roads: list[str] = []  # the announced roads
-        self._way: list[tuple[str, Polyline]] = []  # the announced lanes
+        self._way: list[tuple[str, Polyline]] = []  # the announced lanes ...
+        self._at = 0  # ... and on which of them the ego is
         self._lines: dict[str, Polyline | None] = {}
         places = self._circulation.places(traffic)
         self._sumo = start(network, seed, self.collision_action)
@@ -90,7 +92,7 @@ class SumoSimulator:
 
     def announce(self, lanes: Sequence[str]) -> None:
         """Tell the others by which lanes the ego means to go on, so that they give way to it at junctions."""
-        self._way = [(lane, line) for lane in dict.fromkeys(lanes) if (line := self._line(lane))]
+        self._way, self._at = [(lane, line) for lane in dict.fromkeys(lanes) if (line := self._line(lane))], 0
         way = [lane for lane in lanes if lane in self._network.lanes]
         way += self._onward(way[-1])
         roads = [self._network.lanes[lane].edge for lane in way]
@@ -141,7 +143,7 @@ class SumoSimulator:
         room = self._network.lanes[lane].length - station - self._limits.length
         speed = min(self._rules.wished_speed, self._network.lanes[lane].speed, math.sqrt(2 * GENTLE * max(room, 0.0)))
         speed = min(speed, self._sumo.vehicle.getSpeed(car)) if car else speed
-        self._way, self._roads = [(lane, self._network.lanes[lane].centre)], [edge]
+        self._way, self._at, self._roads = [(lane, self._network.lanes[lane].centre)], 0, [edge]
         self._ego = VehicleState(EGO_ID, pose, lane, speed=speed, length=self._limits.length, width=self._limits.width)
         self._place(self._ego)
         self._advance()
@@ -201,18 +203,21 @@ class SumoSimulator:
         self._keep_route()
         x, y, heading = ego.pose
         x, y = x + ego.length / 2 * math.cos(heading), y + ego.length / 2 * math.sin(heading)
-        lane = self._lane_at(x, y)
-        edge, _, index = lane.rpartition("_")
+        self._at = self._nearest(x, y)
+        edge, _, index = self._way[self._at][0].rpartition("_")
         angle = 90.0 - math.degrees(heading)
         self._sumo.vehicle.moveToXY(EGO_ID, edge, int(index), x, y, angle, keepRoute=2)
         self._sumo.vehicle.setSpeed(EGO_ID, ego.speed)
-        self._ego = replace(ego, lane=lane)
 
-    def _lane_at(self, x: float, y: float) -> str:
-        """Return the announced lane nearest to a point, the last of those that are equally near."""
-        offsets = [abs(line.project(x, y)[1]) for _, line in self._way]
-        nearest = min(offsets)
-        return next(lane for (lane, _), d in zip(self._way[::-1], offsets[::-1], strict=True) if d < nearest + JOINT)
+    def _nearest(self, x: float, y: float) -> int:
+        """Return which of the announced lanes is nearest to a point, the last of those that are equally near.
+
+        Only the next ones are looked at, and the one before.
+        """
+        first = max(self._at - 1, 0)
+        offsets = [abs(line.project(x, y)[1]) for _, line in self._way[first : self._at + NEXT_LANES]]
+        near = min(offsets) + JOINT
+        return first + max(i for i, offset in enumerate(offsets) if offset < near)
 
     def _advance(self) -> None:
         self._sumo.simulationStep()
@@ -235,7 +240,8 @@ class SumoSimulator:
         # SUMO may for one step find the ego on no lane: then it is not seen from itself, and yet in the simulation
         if self._ego is None or (EGO_ID not in seen and EGO_ID not in self._sumo.vehicle.getIDList()):
             raise SimulatorError("the ego vanished from the simulation")
-        self._ego = replace(self._ego, z=self._sumo.vehicle.getPosition3D(EGO_ID)[2])
+        z = self._sumo.vehicle.getPosition3D(EGO_ID)[2]
+        self._ego = replace(self._ego, lane=self._way[self._at][0], z=z)
         time = round(self._sumo.simulation.getTime(), 3)
         signals = self._reader.signals(self._network.signals, time)
         return Scene(time, self._ego, self._reader.vehicles(seen, self._steps), signals)
