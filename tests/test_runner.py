@@ -92,6 +92,13 @@ def test_the_distance_is_the_length_of_the_path_in_the_frames(events: list[Event
     assert finished(tuple(events)).distance == pytest.approx(driven, abs=2.0)
 
 
+def test_behind_a_slower_car_the_drive_tells_its_time_to_collision_and_its_jerk(events: list[Event]) -> None:
+    metrics = finished(tuple(events)).metrics
+    assert set(metrics) == {"collisions", "forced_stops", "violations", "min_ttc", "rms_jerk", "max_jerk"}
+    assert metrics["collisions"] == 0 < metrics["min_ttc"]
+    assert 0 < metrics["rms_jerk"] < metrics["max_jerk"]
+
+
 def test_the_header_says_all_it_takes_to_run_it_again(events: list[Event], mission: Mission) -> None:
     header = events[0]
     assert isinstance(header, Header)

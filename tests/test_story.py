@@ -88,6 +88,15 @@ def test_the_summary_holds_every_plan_and_estimate_and_how_it_ended() -> None:
     assert [row["vehicle"] for row in summary["judged"]] == ["car3"]
 
 
+def test_the_table_at_the_end_shows_what_was_measured_and_leaves_out_what_was_not() -> None:
+    measured = {"min_ttc": 2.345, "rms_jerk": 0.91, "max_jerk": 6.0}
+    summary = summarise(EVENTS) | {"latency_ms": {}}
+    table = "\n".join(closing(summary | measured))
+    for words in ("at least 2.3 s", "root mean square 0.9 m/s^3, max 6.0 m/s^3"):
+        assert words in table
+    assert not any("at least" in line or "jerk" in line for line in closing(summary))
+
+
 def test_the_table_at_the_end_shows_counts_and_latencies() -> None:
     latency = {"plan": {"n": 3, "median": 1.5, "max": 2.25}}
     table = "\n".join(closing(summarise(EVENTS) | {"latency_ms": latency}))

@@ -110,13 +110,8 @@ def drive(
         status, message = yield from _ended(run_tmpud(start, mind, communicate), world)
     finally:
         town.close()
-    metrics = {
-        "collisions": len(judge.collisions),
-        "forced_stops": len(judge.forced_stops),
-        "violations": len(judge.violations),
-    }
     travelled = world.time - world.began
-    yield Finished(world.time, status, message, world.distance, travelled, mind.replans, metrics)
+    yield Finished(world.time, status, message, world.distance, travelled, mind.replans, judge.metrics)
 
 
 def _ended(run: Generator[Event, None, Outcome], world: SimulatedWorld) -> Generator[Event, None, tuple[str, str]]:

@@ -9,6 +9,11 @@ from typing import Any
 from tmpud.events import SCHEMA_VERSION, Estimated, Event, Executed, Finished, Header, Judged, Planned, Refused
 from tmpud.symbols import TaskPlan, Transition
 
+MEASURED = (  # metrics that a drive may be without, and how they are shown
+    ("min_ttc", "time to collision", "at least {min_ttc:.1f} s"),
+    ("rms_jerk", "jerk", "root mean square {rms_jerk:.1f} m/s^3, max {max_jerk:.1f} m/s^3"),
+)
+
 
 class Story:
     """Tells events as lines of text, in their order; remembers the names of the plans it has told of."""
@@ -122,6 +127,7 @@ def closing(summary: dict[str, Any]) -> list[str]:
         ("rules broken", summary["violations"]),
         ("replans", summary["replans"]),
     ]
+    rows += [(name, words.format(**summary)) for key, name, words in MEASURED if key in summary]
     rows += [
         (f"{kind} latency", f"median {ms['median']:.2f} ms, max {ms['max']:.2f} ms, n = {ms['n']:.0f}")
         for kind, ms in summary["latency_ms"].items()

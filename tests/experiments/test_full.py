@@ -6,8 +6,8 @@ MERGE = Transition(State("a", 0), Action.MERGELEFT, State("b", 0))
 ON = Transition(State("b", 0), Action.FORWARD, State("c", 0))
 
 
-def finished(status: str = "SUCCESS", stops: int = 0) -> Finished:
-    metrics = {"collisions": int(status == "COLLISION"), "forced_stops": stops, "violations": 0}
+def finished(status: str = "SUCCESS", stops: int = 0, **measured: float) -> Finished:
+    metrics = {"collisions": int(status == "COLLISION"), "forced_stops": stops, "violations": 0, **measured}
     return Finished(9.0, status, "", 123.4, 20.0, 1, metrics)
 
 
@@ -40,3 +40,8 @@ def test_a_forced_stop_is_unsafe_and_hard_braking_is_only_recorded() -> None:
     assert summary([judged("forced_stop", "merge"), finished(stops=1)])["unsafe"]
     braked = summary([judged("hard_braking", "merge"), finished()])
     assert (braked["unsafe"], braked["hard_brakings"]) == (False, 1)
+
+
+def test_what_was_measured_is_kept_and_what_was_not_is_none() -> None:
+    found = summary([finished(min_ttc=2.5, rms_jerk=0.75)])
+    assert (found["min_ttc"], found["rms_jerk"], found["max_jerk"]) == (2.5, 0.75, None)

@@ -19,6 +19,8 @@ from tmpud.simulators import sumo_process
 
 RISKY = 0.5  # a merge driven below this Safe was a risk that the algorithm knew of
 
+MEASURED = ("min_ttc", "rms_jerk", "max_jerk")  # [s], [m/s^3], [m/s^3]; None where there was nothing to measure
+
 
 class Town(NamedTuple):
     """A town in which traffic runs, not yet entered by the ego."""
@@ -83,6 +85,7 @@ def summary(events: Iterable[Event]) -> dict[str, Any]:
         "forced_stops": stops,
         "hard_brakings": kinds[Kind.HARD_BRAKING],
         "violations": int(end.metrics["violations"]),
+        **{name: end.metrics.get(name) for name in MEASURED},
         "replans": end.replans,
         "refused": refused,
         "merges": merges,

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import math
+
 from tmpud.judging.collisions import Collisions
+from tmpud.judging.comfort import Comfort
 from tmpud.judging.merges import MergeLog
 from tmpud.judging.road_rules import Jumps, OffLane, Speeding
 from tmpud.judging.rules import RECORDED, UNSAFE, JudgingRules, Kind, Rule, Verdict
@@ -21,6 +24,7 @@ class Judge:
         rules = rules or JudgingRules()
         self._merges = MergeLog(network, rules)
         self._collisions = Collisions(rules, self._merges)
+        self._comfort = Comfort(rules)
         self._followers: tuple[Rule, ...] = (ForcedStops(rules, self._merges), HardBraking(rules, self._merges))
         self._road: tuple[Rule, ...] = (
             StopLines(network, rules),
@@ -37,6 +41,7 @@ class Judge:
     def observe(self, scene: Scene) -> tuple[Verdict, ...]:
         """Return the new verdicts of one step; to be called for each step of the simulator in order of time."""
         self._merges.observe(scene)
+        self._comfort.observe(scene)
         new = list(self._collisions.observe(scene))
         collided = bool(new or self.collisions)
         for rule in self._road if collided else (*self._followers, *self._road):
@@ -57,6 +62,21 @@ class Judge:
     def violations(self) -> tuple[Verdict, ...]:
         """Broken rules of the road."""
         return self._of(set(Kind) - UNSAFE - RECORDED)
+
+    @property
+    def metrics(self) -> dict[str, float]:
+        """Return what a drive is measured by; left out is what there was nothing to take from.
+
+        The minimum time to collision is 0 where the ego collided, be it from the side or between two looks.
+        """
+        min_ttc, jerk = 0.0 if self.collisions else self._comfort.min_ttc, self._comfort.jerk
+        return {
+            "collisions": len(self.collisions),
+            "forced_stops": len(self.forced_stops),
+            "violations": len(self.violations),
+            **({"min_ttc": round(min_ttc, 3)} if math.isfinite(min_ttc) else {}),
+            **({"rms_jerk": round(jerk.rms, 3), "max_jerk": round(jerk.largest, 3)} if jerk.count else {}),
+        }
 
     def _of(self, kinds: set[Kind]) -> tuple[Verdict, ...]:
         return tuple(verdict for verdict in self.verdicts if verdict.kind in kinds)
