@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from itertools import chain
 
 import numpy as np
 from numpy.typing import NDArray
@@ -74,8 +75,9 @@ class Vehicles:
     @classmethod
     def of_rows(cls, ids: tuple[str, ...], lanes: tuple[str, ...], rows: Sequence[tuple[float, ...]]) -> Vehicles:
         """Gather rows of x, y, z, heading, speed, yaw rate, acceleration, length and width into arrays."""
-        columns = np.array(rows, dtype=np.float64).reshape(len(ids), len(_ARRAYS)).T.copy()
-        return cls(ids, lanes, *columns)
+        shape = len(ids), len(_ARRAYS)
+        flat = np.fromiter(chain.from_iterable(rows), dtype=np.float64, count=shape[0] * shape[1])
+        return cls(ids, lanes, *flat.reshape(shape).T.copy())
 
 
 _ARRAYS = ("x", "y", "z", "heading", "speed", "yaw_rate", "acceleration", "length", "width")

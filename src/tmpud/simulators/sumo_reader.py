@@ -13,7 +13,7 @@ from tmpud.scene import Vehicles
 
 EGO_ID = "ego"
 DT = 0.05  # [s] of one step
-YAW_WINDOW = 11  # steps over which a yaw rate is measured
+YAW_WINDOW = 11  # steps whose headings tell a yaw rate
 
 
 class SumoReader:
@@ -29,9 +29,9 @@ class SumoReader:
             sumo.VAR_ACCELERATION: vehicle.getAcceleration,
             sumo.VAR_LANE_ID: vehicle.getLaneID,
         }
-        self.fields = tuple(self._getters)  # what to subscribe to
+        self.fields = tuple(self._getters)  # what to subscribe to, in this order
         self._sizes: dict[str, tuple[float, float]] = {}  # vehicle -> length and width [m], which never change
-        self._headings: dict[str, deque[tuple[int, float]]] = {}
+        self._headings: deque[tuple[int, dict[str, float]]] = deque()  # (step, vehicle -> heading), oldest first
         self._signals: dict[str, str] = {}
         self._next_switch = -math.inf  # [s]
 
@@ -42,20 +42,19 @@ class SumoReader:
 
     def vehicles(self, seen: Mapping[str, Mapping[int, Any]], step: int) -> Vehicles:
         """Return vehicles but the ego from SUMO's values, in the order of their ids."""
-        sumo = self._sumo
+        position, angle, speed, acceleration, lane = self.fields
         ids = tuple(sorted(seen.keys() - {EGO_ID}))
+        headings = self._headings_at(step)
         rows = []
         for vehicle in ids:
             values = seen[vehicle]
-            x, y, z = values[sumo.VAR_POSITION3D]
-            heading = wrap_angle(math.radians(90.0 - values[sumo.VAR_ANGLE]))
-            length, width = self._size(vehicle)
+            x, y, z = values[position]
+            headings[vehicle] = heading = wrap_angle(math.radians(90.0 - values[angle]))
+            length, width = self._sizes.get(vehicle) or self._size(vehicle)
             x, y = x - length / 2 * math.cos(heading), y - length / 2 * math.sin(heading)
             yaw_rate = self._yaw_rate(vehicle, heading, step)
-            rows.append(
-                (x, y, z, heading, values[sumo.VAR_SPEED], yaw_rate, values[sumo.VAR_ACCELERATION], length, width)
-            )
-        return Vehicles.of_rows(ids, tuple(seen[vehicle][sumo.VAR_LANE_ID] for vehicle in ids), rows)
+            rows.append((x, y, z, heading, values[speed], yaw_rate, values[acceleration], length, width))
+        return Vehicles.of_rows(ids, tuple([seen[vehicle][lane] for vehicle in ids]), rows)
 
     def signals(self, lights: Iterable[str], time: float) -> Mapping[str, str]:
         """Return what the lights show; the same object as long as none has come to its next switch."""
@@ -66,16 +65,18 @@ class SumoReader:
         return self._signals
 
     def _size(self, vehicle: str) -> tuple[float, float]:
-        if vehicle not in self._sizes:
-            self._sizes[vehicle] = self._sumo.vehicle.getLength(vehicle), self._sumo.vehicle.getWidth(vehicle)
+        self._sizes[vehicle] = self._sumo.vehicle.getLength(vehicle), self._sumo.vehicle.getWidth(vehicle)
         return self._sizes[vehicle]
 
+    def _headings_at(self, step: int) -> dict[str, float]:
+        """Return where to note the headings of this step, and forget those before the window."""
+        while self._headings and self._headings[0][0] <= step - YAW_WINDOW:
+            self._headings.popleft()
+        if not self._headings or self._headings[-1][0] != step:
+            self._headings.append((step, {}))
+        return self._headings[-1][1]
+
     def _yaw_rate(self, vehicle: str, heading: float, step: int) -> float:
-        """Return the mean yaw rate over the last half second in which the vehicle was seen [rad/s]."""
-        history = self._headings.setdefault(vehicle, deque(maxlen=YAW_WINDOW))
-        if history and step - history[-1][0] > YAW_WINDOW:
-            history.clear()
-        if not history or history[-1][0] != step:
-            history.append((step, heading))
-        first, then = history[0]
-        return wrap_angle(heading - then) / ((step - first) * DT) if step > first else 0.0
+        """Return the mean yaw rate since the vehicle was first seen within the window [rad/s]."""
+        then, first = next((then, seen[vehicle]) for then, seen in self._headings if vehicle in seen)
+        return wrap_angle(heading - first) / ((step - then) * DT) if step > then else 0.0
