@@ -14,7 +14,7 @@ from tmpud.cli.running import run_tasks
 
 if TYPE_CHECKING:
     from tmpud.experiments.kinds import Findings
-    from tmpud.experiments.tasks import Task
+    from tmpud.experiments.running.tasks import Task
 
 app = typer.Typer()
 paper_app = typer.Typer(help="Repeat the paper's experiments.", no_args_is_help=True)
@@ -40,8 +40,8 @@ def table1(
     as_json: Json = False,
 ) -> None:
     """Drive Table I in full simulation: five algorithms, normal and heavy traffic, paired seeds."""
-    from tmpud.experiments.grid import cells
-    from tmpud.experiments.table1 import Table1
+    from tmpud.experiments.trials.grid import cells
+    from tmpud.experiments.trials.table1 import Table1
 
     asked = Table1(map=map_, missions=missions, trials=trials, preset=preset, first_seed=first_seed)
     grid = asked.grid()
@@ -62,8 +62,8 @@ def figure4(
     as_json: Json = False,
 ) -> None:
     """Draw the paper's figure in abstract simulation: five algorithms under four road conditions."""
-    from tmpud.experiments.figure4 import Figure4
-    from tmpud.experiments.local_world import SHIPPED
+    from tmpud.experiments.trials.figure4 import Figure4
+    from tmpud.experiments.worlds.models import SHIPPED
 
     asked = Figure4(
         map=map_,
@@ -88,13 +88,13 @@ def calibration(
     as_json: Json = False,
 ) -> None:
     """Measure how well Safe foretells an unsafe merge, beside gap, time to collision and RSS distance."""
-    from tmpud.experiments.calibration_report import calibration_report, calibration_tasks
-    from tmpud.experiments.local_world import read_world
-    from tmpud.experiments.predictions import measured, quality_table, to_json
-    from tmpud.experiments.report import write_report
-    from tmpud.experiments.store import provenance
-    from tmpud.experiments.table import as_text
-    from tmpud.experiments.world_check import check_table, checks
+    from tmpud.experiments.calibration.foresight import check_table, checks
+    from tmpud.experiments.calibration.predictions import measured, quality_table, to_json
+    from tmpud.experiments.calibration.report import calibration_report, calibration_tasks
+    from tmpud.experiments.reports.document import write_report
+    from tmpud.experiments.reports.table import as_text
+    from tmpud.experiments.running.store import provenance
+    from tmpud.experiments.worlds.models import read_world
 
     options = {"merges": merges, "drives": drives, "first_seed": first_seed, "map": map_}
     tasks = calibration_tasks(merges, drives, first_seed, map_)
@@ -119,7 +119,7 @@ def learn_world(
     """Learn the abstract simulation's world models by forcing merges in a small area of the full simulator."""
     from datetime import UTC, datetime
 
-    from tmpud.experiments.learning import tasks, to_json, world
+    from tmpud.experiments.worlds.learning import tasks, to_json, world
 
     options = {"merges": merges, "seed": seed}
     _, results = run_tasks("learn-world", options, tasks(merges, seed), out.with_name(out.name + ".runs"), jobs=jobs)
@@ -140,8 +140,8 @@ def sweep(
     as_json: Json = False,
 ) -> None:
     """Drive any grid of maps, missions, densities, algorithms, presets and seeds."""
-    from tmpud.experiments.grid import cells
-    from tmpud.experiments.sweep import read_sweep
+    from tmpud.experiments.trials.grid import cells
+    from tmpud.experiments.trials.sweep import read_sweep
 
     grid = read_sweep(file)
     _experiment("sweep", grid.to_json(), [cell.task for cell in cells(grid)], out, jobs=jobs, as_json=as_json)
@@ -155,9 +155,9 @@ def results(
     as_json: Json = False,
 ) -> None:
     """Print an experiment's results, export its trials, or compare two runs trial by trial."""
-    from tmpud.experiments.export import write_rows
     from tmpud.experiments.kinds import findings
-    from tmpud.experiments.store import read_results
+    from tmpud.experiments.reports.export import write_rows
+    from tmpud.experiments.running.store import read_results
 
     found = findings(read_results(folder))
     for damage in found.results.damages:
@@ -175,9 +175,9 @@ def _experiment(
     name: str, options: Mapping[str, Any], tasks: Sequence[Task], out: Path | None, *, jobs: int, as_json: bool
 ) -> None:
     """Run what is left of an experiment of trials, write its report, and say what came out."""
-    from tmpud.experiments.export import write_rows
     from tmpud.experiments.kinds import findings
-    from tmpud.experiments.report import write_report
+    from tmpud.experiments.reports.document import write_report
+    from tmpud.experiments.reports.export import write_rows
 
     folder, results = run_tasks(name, options, tasks, out, jobs=jobs)
     found = findings(results)
@@ -188,7 +188,7 @@ def _experiment(
 
 
 def _tell(found: Findings, *, as_json: bool) -> None:
-    from tmpud.experiments.table import as_text, findings_table, verdicts
+    from tmpud.experiments.reports.table import as_text, findings_table, verdicts
 
     if as_json:
         typer.echo(json.dumps(found.to_json()))
@@ -203,8 +203,8 @@ def _tell(found: Findings, *, as_json: bool) -> None:
 
 
 def _compare(first: Findings, second: Findings, *, as_json: bool) -> None:
-    from tmpud.experiments.comparison import compare_runs
-    from tmpud.experiments.table import as_text
+    from tmpud.experiments.reports.comparison import compare_runs
+    from tmpud.experiments.reports.table import as_text
 
     table = compare_runs(first.rows, second.rows)
     if as_json:
