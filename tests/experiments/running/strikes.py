@@ -44,7 +44,8 @@ def interrupt(plan: Plan) -> Found:
         _wait_for(folder / LOCK, campaign)  # before, an interrupt may still be one that a shell had ignored
         time.sleep(took * plan["at"])
         found.struck = campaign.process.poll() is None
-        (os.killpg if plan["group"] else os.kill)(campaign.process.pid, plan["signal"])
+        if found.struck:
+            (os.killpg if plan["group"] else os.kill)(campaign.process.pid, plan["signal"])
         began = time.monotonic()
         code = campaign.wait()
         found.orphans = campaign.left_over()

@@ -133,6 +133,43 @@ def test_the_tasks_of_damaged_records_are_done_again(tmp_path: Path, capsys: pyt
     assert f"{tmp_path / RESULTS}:6: cut off" in said
 
 
+@pytest.mark.parametrize("isolated", [False, True])
+@pytest.mark.parametrize("how", ["crash", "hang", "raise"])
+def test_what_ended_in_a_tool_fault_is_tried_again_once_and_nothing_else_is(
+    tmp_path: Path, isolated: bool, how: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    healthy, folder = tmp_path / "healthy", tmp_path / "run"
+    todo = [*tasks(4, isolated=isolated), task("bad", isolated=isolated, how=how, until=str(healthy))]
+    assert finish(folder, todo, task=0.5)["bad"].status == FAULTS[how]
+    before = (folder / RESULTS).read_bytes()
+    assert "again" not in capsys.readouterr().err
+    healthy.touch()
+    records = finish(folder, todo)
+    assert "1 of 5 tasks ended in a tool fault before; trying again" in capsys.readouterr().err
+    assert results_hash(records.values()) == results_hash(finish(tmp_path / "unbroken", todo).values())
+    after = (folder / RESULTS).read_bytes()
+    assert after.startswith(before)
+    assert (len(before.splitlines()), len(after.splitlines())) == (5, 6)
+    assert results_hash(finish(folder, todo).values()) == results_hash(records.values())
+    assert (folder / RESULTS).read_bytes() == after
+    assert "again" not in capsys.readouterr().err
+
+
+def test_a_task_that_fails_again_keeps_one_record(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    first = finish(tmp_path, todo := [*tasks(2), task("bad", how="raise")])
+    assert finish(tmp_path, todo) == first
+    assert "trying again" in capsys.readouterr().err
+    results = read_results(tmp_path)
+    assert (len(results.records), results.complete, results.damages) == (3, True, ())
+
+
+def test_a_fault_stays_until_its_task_has_ended_again(tmp_path: Path) -> None:
+    finish(tmp_path, todo := [task("bad", how="raise"), *tasks(2)])
+    before = read_results(tmp_path).records
+    assert {record.key for record in islice(run(tmp_path, todo), 2)} == {"0000", "0001"}
+    assert read_results(tmp_path).records == before
+
+
 def test_another_experiment_is_refused_before_anything_runs(tmp_path: Path) -> None:
     finish(tmp_path, tasks(2))
     other = Experiment(name="try", options={"trials": 4})

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tmpud.experiments.running.lines import Contents, counted, decode, encode, read
-from tmpud.experiments.running.tasks import DONE, ERROR, Record
+from tmpud.experiments.running.tasks import DONE, ERROR, TOOL_FAULTS, Record
 
 RESULTS = st.dictionaries(
     st.text(),
@@ -18,8 +18,8 @@ RESULTS = st.dictionaries(
 )
 
 
-def record(key: str = "a", task: str = "1", **result: float) -> Record:
-    return Record(key=key, digest=task, status=DONE, result=result)
+def record(key: str = "a", task: str = "1", status: str = DONE, **result: float) -> Record:
+    return Record(key=key, digest=task, status=status, result=result)
 
 
 @given(key=st.text(), result=RESULTS)
@@ -58,7 +58,18 @@ def test_a_line_that_was_cut_off_is_outside_the_size(tmp_path: Path) -> None:
     assert contents.damages == (f"{file}:2: cut off; dropped",)
 
 
-def test_the_first_record_of_a_key_counts(tmp_path: Path) -> None:
+@given(st.lists(st.tuples(st.sampled_from([DONE, *TOOL_FAULTS]), st.integers(0, 2)), min_size=1))
+def test_the_first_result_counts_and_else_the_last_fault(ends: list[tuple[str, int]]) -> None:
+    records = [record(status=status, take=take) for status, take in ends]
+    done = [one for one in records if one.status == DONE]
+    found, refused = counted(Path("file"), Contents(tuple(enumerate(records, 1)), (), 0), {"a": "1"})
+    expected = done[0] if done else records[-1]
+    assert found == {"a": expected}
+    after = records[records.index(expected) :] if done else []
+    assert len(refused) == sum(one != expected for one in after), "a fault before a result is no damage"
+
+
+def test_the_first_result_of_a_key_counts(tmp_path: Path) -> None:
     contents = Contents(((1, record(distance=1)), (2, record(distance=1)), (3, record(distance=2))), (), 0)
     records, refused = counted(tmp_path, contents)
     assert records == {"a": record(distance=1)}

@@ -9,6 +9,7 @@ import socket
 import stat
 import threading
 import time
+from pathlib import Path
 from typing import Any
 
 from tmpud.errors import SimulatorError
@@ -29,16 +30,16 @@ def task(key: str, *, isolated: bool = False, shared: int = 0, work: str = "", *
 
 
 class Quick:
-    """Adds up what a task depends on; ``how`` it misbehaves is in the arguments or in what is shared."""
+    """Adds up what a task depends on; ``how`` it misbehaves, ``until`` a file is there, is in what it is given."""
 
     isolated = False
 
     def prepare(self, shared: Json) -> list[int]:
-        misbehave(str(shared.get("how", "")))
+        misbehave(_how(shared))
         return [int(shared["town"])]
 
     def run(self, prepared: list[int], arguments: Json) -> Json:
-        answer: Json | None = misbehave(str(arguments.get("how", "")))
+        answer: Json | None = misbehave(_how(arguments))
         time.sleep(float(arguments.get("seconds", 0.0)))
         text = f"{prepared} {arguments.get('seed')} " + "x" * int(arguments.get("size", 0))
         if answer is not None:
@@ -78,6 +79,11 @@ class Threaded(Isolated):
     def prepare(self, shared: Json) -> list[int]:
         threading.Thread(target=time.sleep, args=(60.0,), daemon=True).start()
         return super().prepare(shared)
+
+
+def _how(given: Json) -> str:
+    healed = "until" in given and Path(given["until"]).exists()
+    return "" if healed else str(given.get("how", ""))
 
 
 def misbehave(how: str) -> Any:

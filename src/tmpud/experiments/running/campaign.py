@@ -17,12 +17,12 @@ from tmpud.experiments.running.manifest import Experiment
 from tmpud.experiments.running.progress import Progress
 from tmpud.experiments.running.store import Store
 from tmpud.experiments.running.supervisor import Supervisor
-from tmpud.experiments.running.tasks import Record, Task, located
+from tmpud.experiments.running.tasks import DONE, Record, Task, located
 from tmpud.experiments.running.workers import Limits
 
 
 def complain(message: str) -> None:
-    """Say on stderr what is wrong with a results folder."""
+    """Say on stderr what a results folder holds that does not count."""
     sys.stderr.write(f"tmpud: {message}\n")
 
 
@@ -37,6 +37,7 @@ def run_campaign(
 ) -> Iterator[Record]:
     """Yield a record of each task: first those already in the folder, then others as they are done and safe on disk.
 
+    What ended in a tool fault is tried again; its record stays until there is another.
     SIGTERM raises KeyboardInterrupt meanwhile. However it ends, no worker is left, and the same call goes on from
     there. FolderError where the folder is another experiment's, in use, or cannot be written.
     """
@@ -44,10 +45,13 @@ def run_campaign(
     with _terminable(), Store(folder, experiment, tasks) as store:
         for damage in store.damages:
             warn(damage)
-        missing = [task for task in tasks if task.key not in store.records]
+        done = {key: record for key, record in store.records.items() if record.status == DONE}
+        if faults := len(store.records) - len(done):
+            warn(f"{faults} of {len(tasks)} tasks ended in a tool fault before; trying again")
+        missing = [task for task in tasks if task.key not in done]
         if progress:
             progress.skip(len(tasks) - len(missing))
-        yield from list(store.records.values())
+        yield from done.values()
         with closing(Supervisor(missing, limits, store.log).run()) as batches:
             for batch in batches:
                 store.append(ended.record for ended in batch)

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from tmpud.experiments.running.tasks import Record
+from tmpud.experiments.running.tasks import DONE, Record
 
 LINE = re.compile(rb'\{"sha256":"([0-9a-f]{32})","record":(\{.*\})\}\n')
 
@@ -58,8 +58,9 @@ def read(file: Path) -> Contents:
 def counted(
     file: Path, contents: Contents, digests: Mapping[str, str] | None = None
 ) -> tuple[dict[str, Record], list[str]]:
-    """Return the record that counts for each key, the first, and what does not count, each as "file:line: why".
+    """Return the record that counts for each key, and what does not count, each as "file:line: why".
 
+    The first that is DONE counts; where none is, the last: a task that ended in a tool fault may have been tried again.
     ``digests`` tells which task each key stands for; where it is not given, a key's first record does.
     """
     records: dict[str, Record] = {}
@@ -71,7 +72,7 @@ def counted(
             wanted = digests.get(record.key, "")
         if record.digest != wanted:
             refused.append(f"{file}:{line}: of another task than the present {record.key!r}; does not count")
-        elif known is None:
+        elif known is None or known.status != DONE:
             records[record.key] = record
         elif known != record:
             refused.append(f"{file}:{line}: a second, other result of {record.key!r}; the first counts")

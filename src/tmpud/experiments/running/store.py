@@ -29,7 +29,7 @@ class Results:
     """What a results folder holds."""
 
     manifest: dict[str, Any]
-    records: tuple[Record, ...]  # one a task, in the order they were made
+    records: tuple[Record, ...]  # one a task, in the order in which tasks first ended
     damages: tuple[str, ...]  # "file:line: what" of each line that does not count
 
     @property
