@@ -6,6 +6,7 @@ import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
+from textwrap import indent
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -20,6 +21,14 @@ if TYPE_CHECKING:
 app = typer.Typer()
 paper_app = typer.Typer(help="Repeat the paper's experiments.", no_args_is_help=True)
 app.add_typer(paper_app, name="paper")
+
+SWEEP = """\
+missions: [paper, "random:5", {from: park1e_0, to: high4n}]
+traffic: {normal: 120, heavy: 200}
+algorithms: [tmpud, threshold(0.3), no-com]
+presets: [tmpud, "tmpud:gamma=1500"]
+seeds: 0..19
+"""
 
 
 @paper_app.command()
@@ -114,10 +123,10 @@ def learn_world(
     typer.echo(f"wrote {out}", err=True)
 
 
-@app.command()
+@app.command(epilog="\b\nA file, of which every key may be left out:\n" + indent(SWEEP, "  "))
 @grouped
 def sweep(
-    file: Annotated[Path, typer.Argument(metavar="FILE.yaml", help="maps, missions, traffic, algorithms, ...")],
+    file: Annotated[Path, typer.Argument(metavar="FILE.yaml", help="What is driven, as below.")],
     running: Running,
 ) -> None:
     """Drive any grid of maps, missions, densities, algorithms, presets and seeds."""

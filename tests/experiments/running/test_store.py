@@ -105,7 +105,7 @@ def test_the_command_and_the_time_may_differ(tmp_path: Path) -> None:
     assert begun["command"] == "tmpud try --jobs 2"
 
 
-@pytest.mark.parametrize("content", [b"", b"{", b"[]", b'{"schema": 0}', b"\xff"])
+@pytest.mark.parametrize("content", [b"", b"{", b"[]", b'{"schema": 0}', b'{"schema": 1}', b"\xff"])
 def test_a_damaged_manifest_is_refused(tmp_path: Path, content: bytes) -> None:
     Store(tmp_path, TRY, TASKS).close()
     (tmp_path / MANIFEST).write_bytes(content)

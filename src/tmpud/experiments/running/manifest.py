@@ -19,6 +19,7 @@ from tmpud.experiments.running.tasks import Json, Task, digest
 
 MANIFEST = "manifest.json"
 SCHEMA = 1
+KEYS = {"experiment", "options", "tasks", "versions", "code", "command", "begun"}
 PACKAGES = ("tmpud", "clingo", "libsumo", "numpy")
 SHOWS_ONLY = (  # files that read results and cannot change them
     "cli/", "story.py", "viewer/", "experiments/kinds", "experiments/reports/", "experiments/running/progress",
@@ -71,11 +72,11 @@ def read_manifest(folder: Path) -> dict[str, Any]:
     file = folder / MANIFEST
     try:
         manifest = json.loads(file.read_bytes())
-    except FileNotFoundError as error:
+    except (FileNotFoundError, NotADirectoryError) as error:
         raise RunFileError(f"{folder}: no results: there is no {MANIFEST}") from error
     except (OSError, ValueError) as error:
         raise RunFileError(f"{file}: cannot be read ({error})") from error
-    if not isinstance(manifest, dict) or manifest.get("schema") != SCHEMA:
+    if not isinstance(manifest, dict) or manifest.get("schema") != SCHEMA or not manifest.keys() >= KEYS:
         raise RunFileError(f"{file}: not a manifest of schema {SCHEMA}")
     return manifest
 
