@@ -1,15 +1,18 @@
 import json
 import os
+import re
 import subprocess
 import sys
 from collections.abc import Callable
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import pytest
 
 from tests.roads.nets import CROSSING
-from tmpud.cli import main
+from tmpud.cli import INTERRUPTED, main
+from tmpud.errors import TmpudError
 from tmpud.roads.towns import PAPER_MISSIONS
 
 START, GOAL, _ = PAPER_MISSIONS["millbrook"]
@@ -230,6 +233,31 @@ def test_debug_shows_the_traceback(tmpud: Tmpud) -> None:
 def test_help_names_the_commands(tmpud: Tmpud) -> None:
     for command in ("demo", "drive", "plan", "map", "asp"):
         assert command in tmpud("--help").out
+
+
+def test_help_says_what_every_exit_code_of_an_error_means(tmpud: Tmpud) -> None:
+    said = tmpud("--help").out.partition("Exit codes:\n")[2]
+    listed = {int(line.split()[0]) for line in said.splitlines() if line.strip()}
+    errors: list[type[TmpudError]] = [TmpudError, *TmpudError.__subclasses__()]
+    assert listed == {0, INTERRUPTED, *(error.exit_code for error in errors)}
+
+
+def test_the_version_is_the_packages(tmpud: Tmpud) -> None:
+    assert tmpud("--version") == Result(0, f"tmpud {version('tmpud')}\n", "")
+
+
+@pytest.mark.parametrize(
+    ("command", "others"),
+    [
+        (("plan",), ["--json"]),
+        (("asp", "dump"), ["--out"]),
+        (("drive",), ["--algorithm", "--beta", "--traffic", "--out", "--frames", "--json"]),
+    ],
+)
+def test_commands_on_a_journey_take_the_same_options(tmpud: Tmpud, command: tuple[str, ...], others: list[str]) -> None:
+    journey = ["--from", "--to", "--map", "--via", "--seed", "--preset"]
+    words = re.findall(r"^ +(?:-m, )?(--\w+)", tmpud(*command, "--help").out, re.MULTILINE)
+    assert words == [*journey, *others, "--help"]
 
 
 # Drives ------------------------------------------------------------------------------------------------------------

@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from tmpud.experiments.trials.sweep import read_sweep
+
 SWEEP = """
 traffic: {few: 15}
 missions: {from: park2e_0, to: high3n_1}
@@ -76,10 +78,20 @@ def test_results_are_printed_exported_and_compared(swept: Path) -> None:
     assert "4 tasks done" in tmpud(swept, "results", "run").stdout
 
 
-def test_a_folder_without_results_is_refused(tmp_path: Path) -> None:
-    refused = tmpud(tmp_path, "results", "nowhere")
+@pytest.mark.parametrize("name", ["nowhere", "empty", "file"])
+def test_what_is_no_folder_of_results_is_refused_in_one_line(tmp_path: Path, name: str) -> None:
+    (tmp_path / "empty").mkdir()
+    (tmp_path / "file").touch()
+    refused = tmpud(tmp_path, "results", name)
     assert refused.returncode == 4
-    assert refused.stderr.startswith("tmpud: nowhere: no results")
+    assert refused.stderr == f"tmpud: {name}: no results: there is no manifest.json\n"
+
+
+def test_the_file_that_help_shows_can_be_swept(tmp_path: Path) -> None:
+    shown = tmpud(tmp_path, "sweep", "--help").stdout.partition("left out:\n")[2]
+    (tmp_path / "shown.yaml").write_text(shown)
+    grid = read_sweep(tmp_path / "shown.yaml")
+    assert (len(grid.missions), grid.traffic, len(grid.seeds)) == (3, {"normal": 120, "heavy": 200}, 20)
 
 
 def test_the_figure_is_drawn_from_a_few_trials(tmp_path: Path) -> None:

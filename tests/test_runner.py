@@ -147,17 +147,15 @@ def test_too_many_vehicles_are_refused(mission: Mission) -> None:
         list(drive(replace(mission, traffic=5000)))
 
 
-def test_among_five_hundred_vehicles_an_estimate_takes_less_than_a_second() -> None:
+def test_five_hundred_vehicles_find_room_and_the_ego_takes_the_place_of_one() -> None:
     def make(network: RoadNetwork, mission: Mission) -> Simulator:
         return SumoSimulator(network, traffic=mission.traffic, seed=mission.seed, warm_up=1.0)
 
-    watch = Stopwatch()
     packed = Mission(map="millbrook", start="park1e_0", goal="park2e", traffic=500)
-    run = drive(packed, simulator=make, stopwatch=watch)
+    run = drive(packed, simulator=make)
     frame = next(event for event in run if isinstance(event, Frame))
     run.close()  # type: ignore[attr-defined]
-    assert len(frame.ids) == 499  # the ego took the place of one
-    assert watch.summary()["estimate"]["max"] < 1000
+    assert len(set(frame.ids)) == len(frame.others) == 499
 
 
 def test_a_state_that_is_not_finite_is_an_invalid_state_and_the_simulator_is_closed(mission: Mission) -> None:

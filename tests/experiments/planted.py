@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from tmpud.experiments.rows import TrialRow
+from tmpud.experiments.statistics.rows import TrialRow
 
 # algorithm -> (metres more than the shortest, on average; unsafe trials per trial), in the paper's order of merit
 AS_PAPER = {

@@ -18,7 +18,7 @@ from tests.safety.agreement import (
 )
 from tests.task.agreement import Tally, compare
 from tmpud.dynamics import EGO
-from tmpud.experiments.progress import Progress
+from tmpud.experiments.running.progress import Progress
 from tmpud.roads.loading import load_map, map_file
 from tools.verification.figures import Figure, none_in
 from tools.verification.options import Options, map_name

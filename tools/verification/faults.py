@@ -6,11 +6,11 @@ import tempfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from tests.experiments.damages import damage
-from tests.experiments.faults import LIMIT, misbehave
-from tests.experiments.kills import Found, Plan, placed_plans, random_plans, strike, unbroken
-from tests.experiments.strikes import fill_disk, full_plans, interrupt, interrupt_plans, meet, meeting_plans
-from tmpud.experiments.progress import Progress
+from tests.experiments.running.damages import damage
+from tests.experiments.running.faults import LIMIT, misbehave
+from tests.experiments.running.kills import Found, Plan, placed_plans, random_plans, strike, unbroken
+from tests.experiments.running.strikes import fill_disk, full_plans, interrupt, interrupt_plans, meet, meeting_plans
+from tmpud.experiments.running.progress import Progress
 from tools.verification.figures import Figure
 from tools.verification.options import Options
 from tools.verification.trials import each

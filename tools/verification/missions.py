@@ -10,7 +10,7 @@ from pathlib import Path
 from statistics import mean, median
 from typing import Any, NamedTuple
 
-from tmpud.experiments.progress import Progress
+from tmpud.experiments.running.progress import Progress
 from tools.verification.figures import Figure, none_in
 from tools.verification.options import Options, map_name
 from tools.verification.trials import TRIED, Trial, drive, each

@@ -9,17 +9,17 @@ import sys
 import tempfile
 from pathlib import Path
 
-from tmpud.experiments.campaign import run_campaign
-from tmpud.experiments.claims import PARTS, Verdict, worst
-from tmpud.experiments.grid import cells
 from tmpud.experiments.kinds import Findings, findings
-from tmpud.experiments.manifest import Experiment
-from tmpud.experiments.progress import Progress
-from tmpud.experiments.report import write_report
-from tmpud.experiments.store import read_results
-from tmpud.experiments.table1 import FIRST_SEED, Table1
-from tmpud.experiments.tasks import results_hash
-from tmpud.experiments.workers import Limits
+from tmpud.experiments.reports.document import write_report
+from tmpud.experiments.running.campaign import run_campaign
+from tmpud.experiments.running.manifest import Experiment
+from tmpud.experiments.running.progress import Progress
+from tmpud.experiments.running.store import read_results
+from tmpud.experiments.running.tasks import results_hash
+from tmpud.experiments.running.workers import Limits
+from tmpud.experiments.statistics.claims import PARTS, Verdict, worst
+from tmpud.experiments.trials.grid import cells
+from tmpud.experiments.trials.table1 import FIRST_SEED, Table1
 from tools.verification.figures import ROOT, Figure
 from tools.verification.options import Options
 

@@ -7,7 +7,7 @@ import tempfile
 from itertools import cycle, islice
 from pathlib import Path
 
-from tmpud.experiments.progress import Progress
+from tmpud.experiments.running.progress import Progress
 from tmpud.recording import LOG
 from tmpud.roads import load_map, shipped_towns
 from tools.check_traffic import STANDING

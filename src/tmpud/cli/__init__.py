@@ -3,15 +3,27 @@
 from __future__ import annotations
 
 import sys
-from typing import NoReturn
+from typing import Annotated, NoReturn
 
 import typer
 
+import tmpud
 from tmpud.cli import driving, experiments, planning
 from tmpud.errors import TmpudError
 
+INTERRUPTED = 130
+EXIT_CODES = {
+    0: "done",
+    1: "no plan leads there, or the drive did not arrive",
+    2: "what was asked cannot be done: an option, a map, a place, a file, a folder",
+    3: "the simulator does not start, or died",
+    4: "a run or results folder cannot be read",
+    INTERRUPTED: "interrupted; what was recorded is kept",
+}
+
 app = typer.Typer(
     help="Safe and efficient urban driving by task-motion planning (TMPUD).",
+    epilog="\b\nExit codes:\n" + "\n".join(f"  {code:<5}{meaning}" for code, meaning in EXIT_CODES.items()),
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
@@ -20,7 +32,20 @@ app = typer.Typer(
 for part in (driving, planning, experiments):
     app.add_typer(part.app)
 
-INTERRUPTED = 130  # exit code
+
+def _version(asked: bool) -> None:
+    if asked:
+        typer.echo(f"tmpud {tmpud.__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def common(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version and exit.")
+    ] = False,
+) -> None:
+    pass
 
 
 def main() -> None:
@@ -54,5 +79,5 @@ def _exit_code(error: Exception) -> int:
 
 
 def _fail(message: str, code: int) -> NoReturn:
-    typer.echo(f"tmpud: {message or 'interrupted; what was recorded is kept'}", err=True)
+    typer.echo(f"tmpud: {message or EXIT_CODES[INTERRUPTED]}", err=True)
     sys.exit(code)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tmpud.cli.options import TOWN, Algorithm, Beta, From, Json, Map, Out, PresetName, Seed, To, Traffic, Via
+from tmpud.cli.options import TOWN, Algorithm, Beta, Journey, Json, Out, Seed, Traffic, grouped
 
 if TYPE_CHECKING:
     from tmpud.runner import Mission
@@ -30,16 +30,12 @@ def demo(seed: Seed = DEMO_SEED, out: Out = None) -> None:
 
 
 @app.command()
+@grouped
 def drive(
-    start: From,
-    goal: To,
-    map_: Map = TOWN,
-    via: Via = None,
+    journey: Journey,
     algorithm: Algorithm = "tmpud",
     beta: Beta = 0.3,
     traffic: Traffic = 120,
-    seed: Seed = 7,
-    preset: PresetName = "tmpud",
     out: Out = None,
     frames: Annotated[bool, typer.Option(help="Record what can be seen, ten times a second.")] = True,
     as_json: Json = False,
@@ -48,17 +44,17 @@ def drive(
     from tmpud.runner import Mission
 
     mission = Mission(
-        map=map_,
-        start=start,
-        goal=goal,
-        via=tuple(via or ()),
+        map=journey.map,
+        start=journey.start,
+        goal=journey.goal,
+        via=tuple(journey.via or ()),
         algorithm=algorithm,
         beta=beta,
         traffic=traffic,
-        seed=seed,
-        preset=preset,
+        seed=journey.seed,
+        preset=journey.preset,
     )
-    name = f"{Path(map_).name.split('.')[0]}-{preset}-{algorithm}-{seed}".lower()
+    name = f"{Path(journey.map).name.split('.')[0]}-{journey.preset}-{algorithm}-{journey.seed}".lower()
     _drive(mission, out or Path("runs") / name, as_json=as_json, frames=frames)
 
 

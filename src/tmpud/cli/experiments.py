@@ -4,104 +4,95 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from pathlib import Path
+from textwrap import indent
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tmpud.cli.options import TOWN, Json, Map
+from tmpud.cli.options import TOWN, Jobs, Json, Map, Running, Setting, grouped
 from tmpud.cli.running import run_tasks
 
 if TYPE_CHECKING:
     from tmpud.experiments.kinds import Findings
-    from tmpud.experiments.tasks import Task
+    from tmpud.experiments.running.tasks import Task
 
 app = typer.Typer()
 paper_app = typer.Typer(help="Repeat the paper's experiments.", no_args_is_help=True)
 app.add_typer(paper_app, name="paper")
 
-Jobs = Annotated[int, typer.Option(min=1, max=256, help="Worker processes; they never change a result.")]
-Folder = Annotated[
-    Path | None,
-    typer.Option("--out", help="The folder to write, or to go on in; default: results/<name>-<digest of the options>."),
-]
-Preset = Annotated[str, typer.Option(help="tmpud, paper or released, or one changed, such as tmpud:gamma=1500.")]
+SWEEP = """\
+missions: [paper, "random:5", {from: park1e_0, to: high4n}]
+traffic: {normal: 120, heavy: 200}
+algorithms: [tmpud, threshold(0.3), no-com]
+presets: [tmpud, "tmpud:gamma=1500"]
+seeds: 0..19
+"""
 
 
 @paper_app.command()
+@grouped
 def table1(
+    *,
     trials: Annotated[int, typer.Option(min=1, max=100_000, help="Per algorithm and density.")] = 200,
-    map_: Map = TOWN,
-    missions: Annotated[str, typer.Option(help="paper, or random:N, over which the trials are spread.")] = "paper",
-    preset: Preset = "tmpud",
+    setting: Setting,
     first_seed: Annotated[int, typer.Option(min=0, help="Seed of the first trial.")] = 1000,
-    jobs: Jobs = 2,
-    out: Folder = None,
-    as_json: Json = False,
+    running: Running,
 ) -> None:
     """Drive Table I in full simulation: five algorithms, normal and heavy traffic, paired seeds."""
-    from tmpud.experiments.grid import cells
-    from tmpud.experiments.table1 import Table1
+    from tmpud.experiments.trials.grid import cells
+    from tmpud.experiments.trials.table1 import Table1
 
-    asked = Table1(map=map_, missions=missions, trials=trials, preset=preset, first_seed=first_seed)
-    grid = asked.grid()
-    _experiment("table1", grid.to_json(), [cell.task for cell in cells(grid)], out, jobs=jobs, as_json=as_json)
+    grid = Table1(**asdict(setting), trials=trials, first_seed=first_seed).grid()
+    _experiment("table1", grid.to_json(), [cell.task for cell in cells(grid)], running)
 
 
 @paper_app.command()
+@grouped
 def figure4(
+    *,
     trials: Annotated[int, typer.Option(min=1, max=1_000_000, help="Per algorithm and road condition.")] = 4000,
     batches: Annotated[int, typer.Option(min=1, max=1000, help="The trials are split into so many.")] = 4,
-    map_: Map = TOWN,
-    missions: Annotated[str, typer.Option(help="paper, or random:N, which the trials take turns among.")] = "paper",
-    preset: Preset = "tmpud",
+    setting: Setting,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the draws.")] = 1000,
     world: Annotated[Path | None, typer.Option(help="What learn-world wrote; default: the shipped models.")] = None,
-    jobs: Jobs = 2,
-    out: Folder = None,
-    as_json: Json = False,
+    running: Running,
 ) -> None:
     """Draw the paper's figure in abstract simulation: five algorithms under four road conditions."""
-    from tmpud.experiments.figure4 import Figure4
-    from tmpud.experiments.local_world import SHIPPED
+    from tmpud.experiments.trials.figure4 import Figure4
+    from tmpud.experiments.worlds.models import SHIPPED
 
-    asked = Figure4(
-        map=map_,
-        missions=missions,
-        trials=trials,
-        batches=batches,
-        preset=preset,
-        seed=seed,
-        world=str(world) if world else SHIPPED,
-    )
-    _experiment("figure4", asked.to_json(), asked.tasks(), out, jobs=jobs, as_json=as_json)
+    models = str(world) if world else SHIPPED
+    asked = Figure4(**asdict(setting), trials=trials, batches=batches, seed=seed, world=models)
+    _experiment("figure4", asked.to_json(), asked.tasks(), running)
 
 
 @paper_app.command()
+@grouped
 def calibration(
+    *,
     merges: Annotated[int, typer.Option(min=0, max=100_000, help="Local ones, for each road condition.")] = 400,
     drives: Annotated[int, typer.Option(min=0, max=100_000, help="In the town, for each density.")] = 60,
     first_seed: Annotated[int, typer.Option(min=0, help="Seed of the first drive.")] = 60_000,
     map_: Map = TOWN,
-    jobs: Jobs = 2,
-    out: Folder = None,
-    as_json: Json = False,
+    running: Running,
 ) -> None:
     """Measure how well Safe foretells an unsafe merge, beside gap, time to collision and RSS distance."""
-    from tmpud.experiments.calibration_report import calibration_report, calibration_tasks
-    from tmpud.experiments.local_world import read_world
-    from tmpud.experiments.predictions import measured, quality_table, to_json
-    from tmpud.experiments.report import write_report
-    from tmpud.experiments.store import provenance
-    from tmpud.experiments.table import as_text
-    from tmpud.experiments.world_check import check_table, checks
+    from tmpud.experiments.calibration.foresight import check_table, checks
+    from tmpud.experiments.calibration.predictions import measured, quality_table, to_json
+    from tmpud.experiments.calibration.report import calibration_report, calibration_tasks
+    from tmpud.experiments.reports.document import write_report
+    from tmpud.experiments.reports.table import as_text
+    from tmpud.experiments.running.store import provenance
+    from tmpud.experiments.worlds.models import read_world
 
     options = {"merges": merges, "drives": drives, "first_seed": first_seed, "map": map_}
     tasks = calibration_tasks(merges, drives, first_seed, map_)
-    folder, results = run_tasks("calibration", options, tasks, out, jobs=jobs)
+    folder, results = run_tasks("calibration", options, tasks, running.out, jobs=running.jobs)
     found, worlds = measured(results.records), checks(results.records, read_world())
     files = write_report(folder, calibration_report(found, worlds, results.manifest["command"], provenance(results)))
-    if as_json:
+    if running.as_json:
         typer.echo(json.dumps({"sources": to_json(found), "worlds": [check.to_json() for check in worlds]}))
     else:
         tables = [*(quality_table(*pair) for pair in found), check_table(worlds)]
@@ -119,7 +110,7 @@ def learn_world(
     """Learn the abstract simulation's world models by forcing merges in a small area of the full simulator."""
     from datetime import UTC, datetime
 
-    from tmpud.experiments.learning import tasks, to_json, world
+    from tmpud.experiments.worlds.learning import tasks, to_json, world
 
     options = {"merges": merges, "seed": seed}
     _, results = run_tasks("learn-world", options, tasks(merges, seed), out.with_name(out.name + ".runs"), jobs=jobs)
@@ -132,19 +123,18 @@ def learn_world(
     typer.echo(f"wrote {out}", err=True)
 
 
-@app.command()
+@app.command(epilog="\b\nA file, of which every key may be left out:\n" + indent(SWEEP, "  "))
+@grouped
 def sweep(
-    file: Annotated[Path, typer.Argument(metavar="FILE.yaml", help="maps, missions, traffic, algorithms, ...")],
-    jobs: Jobs = 2,
-    out: Folder = None,
-    as_json: Json = False,
+    file: Annotated[Path, typer.Argument(metavar="FILE.yaml", help="What is driven, as below.")],
+    running: Running,
 ) -> None:
     """Drive any grid of maps, missions, densities, algorithms, presets and seeds."""
-    from tmpud.experiments.grid import cells
-    from tmpud.experiments.sweep import read_sweep
+    from tmpud.experiments.trials.grid import cells
+    from tmpud.experiments.trials.sweep import read_sweep
 
     grid = read_sweep(file)
-    _experiment("sweep", grid.to_json(), [cell.task for cell in cells(grid)], out, jobs=jobs, as_json=as_json)
+    _experiment("sweep", grid.to_json(), [cell.task for cell in cells(grid)], running)
 
 
 @app.command()
@@ -155,9 +145,9 @@ def results(
     as_json: Json = False,
 ) -> None:
     """Print an experiment's results, export its trials, or compare two runs trial by trial."""
-    from tmpud.experiments.export import write_rows
     from tmpud.experiments.kinds import findings
-    from tmpud.experiments.store import read_results
+    from tmpud.experiments.reports.export import write_rows
+    from tmpud.experiments.running.store import read_results
 
     found = findings(read_results(folder))
     for damage in found.results.damages:
@@ -171,24 +161,22 @@ def results(
         _tell(found, as_json=as_json)
 
 
-def _experiment(
-    name: str, options: Mapping[str, Any], tasks: Sequence[Task], out: Path | None, *, jobs: int, as_json: bool
-) -> None:
+def _experiment(name: str, options: Mapping[str, Any], tasks: Sequence[Task], running: Running) -> None:
     """Run what is left of an experiment of trials, write its report, and say what came out."""
-    from tmpud.experiments.export import write_rows
     from tmpud.experiments.kinds import findings
-    from tmpud.experiments.report import write_report
+    from tmpud.experiments.reports.document import write_report
+    from tmpud.experiments.reports.export import write_rows
 
-    folder, results = run_tasks(name, options, tasks, out, jobs=jobs)
+    folder, results = run_tasks(name, options, tasks, running.out, jobs=running.jobs)
     found = findings(results)
     write_rows(found.rows, folder / "trials.csv")
     files = write_report(folder, found.report())
-    _tell(found, as_json=as_json)
+    _tell(found, as_json=running.as_json)
     typer.echo(f"wrote {', '.join(file.name for file in files)}, trials.csv to {folder}", err=True)
 
 
 def _tell(found: Findings, *, as_json: bool) -> None:
-    from tmpud.experiments.table import as_text, findings_table, verdicts
+    from tmpud.experiments.reports.table import as_text, findings_table, verdicts
 
     if as_json:
         typer.echo(json.dumps(found.to_json()))
@@ -203,8 +191,8 @@ def _tell(found: Findings, *, as_json: bool) -> None:
 
 
 def _compare(first: Findings, second: Findings, *, as_json: bool) -> None:
-    from tmpud.experiments.comparison import compare_runs
-    from tmpud.experiments.table import as_text
+    from tmpud.experiments.reports.comparison import compare_runs
+    from tmpud.experiments.reports.table import as_text
 
     table = compare_runs(first.rows, second.rows)
     if as_json:

@@ -5,11 +5,14 @@ from __future__ import annotations
 import json
 import shlex
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tmpud.cli.options import TOWN, From, Json, Map, PresetName, Seed, To, Via
+from tmpud.cli.options import TOWN, Journey, Json, grouped
+
+if TYPE_CHECKING:
+    from tmpud.planning import Problem
 
 app = typer.Typer()
 map_app = typer.Typer(help="Look at maps.", no_args_is_help=True)
@@ -19,19 +22,10 @@ app.add_typer(asp_app, name="asp")
 
 
 @app.command()
-def plan(
-    start: From,
-    goal: To,
-    map_: Map = TOWN,
-    via: Via = None,
-    seed: Seed = 7,
-    preset: PresetName = "tmpud",
-    as_json: Json = False,
-) -> None:
+@grouped
+def plan(journey: Journey, as_json: Json = False) -> None:
     """Print the optimal task plan, proved by the solver; no simulator runs."""
-    from tmpud.planning import Problem
-
-    report = Problem.of(map_, start, goal, tuple(via or ()), seed=seed, preset=preset).solve()
+    report = _problem(journey).solve()
     result = {
         "actions": [step.action.value for step in report.plan],
         "lanes": [step.state.segment.rpartition("/")[0] for step in report.plan]
@@ -71,18 +65,19 @@ def map_info(map_: Annotated[str, typer.Argument(metavar="MAP")] = TOWN, as_json
 
 
 @asp_app.command("dump")
+@grouped
 def asp_dump(
-    start: From,
-    goal: To,
-    map_: Map = TOWN,
-    via: Via = None,
-    seed: Seed = 7,
-    preset: PresetName = "tmpud",
+    journey: Journey,
     out: Annotated[Path, typer.Option(help="The folder to write the encodings and facts.lp into.")] = Path("asp"),
 ) -> None:
     """Write the facts of a mission beside the encodings, so that plain clingo finds the same optimum."""
-    from tmpud.planning import Problem
-
-    files = Problem.of(map_, start, goal, tuple(via or ()), seed=seed, preset=preset).dump(out)
+    files = _problem(journey).dump(out)
     typer.echo(f"wrote {', '.join(file.name for file in files)} to {out}")
     typer.echo(f"try: {shlex.join(['python', '-m', 'clingo', *map(str, files)])}")
+
+
+def _problem(journey: Journey) -> Problem:
+    from tmpud.planning import Problem
+
+    via = tuple(journey.via or ())
+    return Problem.of(journey.map, journey.start, journey.goal, via, seed=journey.seed, preset=journey.preset)

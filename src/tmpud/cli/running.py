@@ -11,20 +11,20 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 if TYPE_CHECKING:
-    from tmpud.experiments.store import Results
-    from tmpud.experiments.tasks import Task
+    from tmpud.experiments.running.store import Results
+    from tmpud.experiments.running.tasks import Task
 
 
 def run_tasks(
     name: str, options: Mapping[str, Any], tasks: Sequence[Task], out: Path | None, *, jobs: int
 ) -> tuple[Path, Results]:
     """Run what is left of an experiment; return its folder and all that the folder holds then."""
-    from tmpud.experiments.campaign import run_campaign
-    from tmpud.experiments.manifest import Experiment
-    from tmpud.experiments.progress import Progress
-    from tmpud.experiments.store import read_results
-    from tmpud.experiments.tasks import digest
-    from tmpud.experiments.workers import Limits
+    from tmpud.experiments.running.campaign import run_campaign
+    from tmpud.experiments.running.manifest import Experiment
+    from tmpud.experiments.running.progress import Progress
+    from tmpud.experiments.running.store import read_results
+    from tmpud.experiments.running.tasks import digest
+    from tmpud.experiments.running.workers import Limits
 
     folder = out or Path("results") / f"{name}-{digest(options)[:8]}"
     typer.echo(f"{name}: {len(tasks)} tasks, {jobs} at a time, into {folder}", err=True)

@@ -9,17 +9,17 @@ from typing import Any
 import numpy as np
 
 from tmpud.errors import RunFileError
-from tmpud.experiments.analysis import Analysis, analyse, report
-from tmpud.experiments.figure4 import DEVIATIONS as FIGURE4_DEVIATIONS
-from tmpud.experiments.figure4 import Figure4
-from tmpud.experiments.grid import Grid
-from tmpud.experiments.grid import rows as grid_rows
-from tmpud.experiments.paper_numbers import FIGURE4, TABLE1, Reference
-from tmpud.experiments.report import Picture, Report
-from tmpud.experiments.rows import TrialRow
-from tmpud.experiments.store import Results, provenance
-from tmpud.experiments.table1 import DEVIATIONS as TABLE1_DEVIATIONS
-from tmpud.experiments.tasks import Record, results_hash
+from tmpud.experiments.reports.analysis import Analysis, analyse, report
+from tmpud.experiments.reports.document import Picture, Report
+from tmpud.experiments.running.store import Results, provenance
+from tmpud.experiments.running.tasks import Record, results_hash
+from tmpud.experiments.statistics.paper_numbers import FIGURE4, TABLE1, Reference
+from tmpud.experiments.statistics.rows import TrialRow
+from tmpud.experiments.trials.figure4 import DEVIATIONS as FIGURE4_DEVIATIONS
+from tmpud.experiments.trials.figure4 import Figure4
+from tmpud.experiments.trials.grid import Grid
+from tmpud.experiments.trials.grid import rows as grid_rows
+from tmpud.experiments.trials.table1 import DEVIATIONS as TABLE1_DEVIATIONS
 
 RESAMPLING_SEED = 1
 Rows = Callable[[Mapping[str, Any], Iterable[Record]], Iterable[TrialRow]]
@@ -88,7 +88,7 @@ class Findings:
 
     def picture(self) -> Picture:
         """Draw mean distance against unsafe trials, a panel per condition."""
-        from tmpud.experiments.charts import batch_panels, draw, interval_panels
+        from tmpud.experiments.reports.charts import batch_panels, draw, interval_panels
 
         panels = batch_panels(self.analysis.pairs) if self.kind.batches else interval_panels(self.analysis.cells)
         bars = "one standard deviation over the batches" if self.kind.batches else "95 % intervals"

@@ -1,0 +1,1 @@
+"""Tasks done by supervised worker processes, into a folder that loses nothing."""

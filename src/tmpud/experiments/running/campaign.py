@@ -1,0 +1,89 @@
+"""Campaigns: all tasks of an experiment, done by supervised workers into a folder from which they can be resumed."""
+
+from __future__ import annotations
+
+import signal
+import sys
+import threading
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import closing, contextmanager
+from pathlib import Path
+from types import FrameType
+from typing import NoReturn
+
+from tmpud.errors import RequestError
+from tmpud.experiments.running.manifest import Experiment
+from tmpud.experiments.running.progress import Progress
+from tmpud.experiments.running.store import Store
+from tmpud.experiments.running.supervisor import Supervisor
+from tmpud.experiments.running.tasks import DONE, Record, Task, located
+from tmpud.experiments.running.workers import Limits
+
+
+def complain(message: str) -> None:
+    """Say on stderr what a results folder holds that does not count."""
+    sys.stderr.write(f"tmpud: {message}\n")
+
+
+def run_campaign(
+    folder: Path,
+    experiment: Experiment,
+    tasks: Sequence[Task],
+    *,
+    limits: Limits,
+    progress: Progress | None = None,
+    warn: Callable[[str], None] = complain,
+) -> Iterator[Record]:
+    """Yield a record of each task: first those already in the folder, then others as they are done and safe on disk.
+
+    What ended in a tool fault is tried again; its record stays until there is another.
+    SIGTERM raises KeyboardInterrupt meanwhile. However it ends, no worker is left, and the same call goes on from
+    there. FolderError where the folder is another experiment's, in use, or cannot be written.
+    """
+    check(tasks)
+    with _terminable(), Store(folder, experiment, tasks) as store:
+        for damage in store.damages:
+            warn(damage)
+        done = {key: record for key, record in store.records.items() if record.status == DONE}
+        if faults := len(store.records) - len(done):
+            warn(f"{faults} of {len(tasks)} tasks ended in a tool fault before; trying again")
+        missing = [task for task in tasks if task.key not in done]
+        if progress:
+            progress.skip(len(tasks) - len(missing))
+        yield from done.values()
+        with closing(Supervisor(missing, limits, store.log).run()) as batches:
+            for batch in batches:
+                store.append(ended.record for ended in batch)
+                store.note(ended.timing for ended in batch)
+                for ended in batch:
+                    if progress:
+                        progress.step()
+                    yield ended.record
+
+
+def check(tasks: Sequence[Task]) -> None:
+    """Refuse tasks that share a key or name work that does not exist."""
+    for work in {task.work for task in tasks}:
+        located(work)
+    key, count = max(Counter(task.key for task in tasks).items(), key=lambda item: item[1], default=("", 0))
+    if count > 1:
+        raise RequestError(f"{count} tasks have the key {key!r}")
+
+
+@contextmanager
+def _terminable() -> Iterator[None]:
+    """Have SIGTERM raise KeyboardInterrupt, where nothing else was arranged."""
+
+    def interrupt(_signal: int, _frame: FrameType | None) -> NoReturn:
+        raise KeyboardInterrupt
+
+    in_main = threading.current_thread() is threading.main_thread()
+    if not in_main or signal.getsignal(signal.SIGTERM) is not signal.SIG_DFL:
+        yield
+        return
+    signal.signal(signal.SIGTERM, interrupt)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, signal.SIG_DFL)

@@ -1,0 +1,1 @@
+"""From trials to paired numbers with intervals, and to verdicts on the paper's claims."""

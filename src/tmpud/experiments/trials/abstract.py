@@ -1,0 +1,112 @@
+"""Trials in abstract simulation: Algorithm 2 and its baselines in worlds drawn from the learned models."""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from tmpud.errors import NoPlanError
+from tmpud.events import Event
+from tmpud.execution.abstract import AbstractWorld, JointSample
+from tmpud.execution.baselines import communication
+from tmpud.execution.deliberation import Deliberation
+from tmpud.execution.tmpud import Communicate, run_tmpud
+from tmpud.experiments.running.tasks import Json
+from tmpud.experiments.trials.plan_memory import PlanMemory
+from tmpud.experiments.worlds.models import joint_sample, read_world
+from tmpud.motion.mapping import StateMapping
+from tmpud.motion.path_planner import PathPlanner
+from tmpud.presets import Preset, preset_named
+from tmpud.roads.loading import load_map
+from tmpud.roads.network import RoadNetwork
+from tmpud.roads.places import request as service_request
+from tmpud.runner import STATUS
+from tmpud.scene import Outcome
+from tmpud.symbols import LazyCost, ServiceRequest, Transition
+from tmpud.task.domain import Domain
+from tmpud.task.search_planner import SearchPlanner
+
+
+@dataclass(frozen=True, slots=True)
+class Way:
+    """One mission's request, the lengths of its transitions, and a planner whose kept tree is the mission's."""
+
+    request: ServiceRequest
+    domain: Domain
+    length: LazyCost
+    planner: SearchPlanner
+
+    def path_length(self, transition: Transition) -> float:
+        return self.length[transition]
+
+
+class Ground(NamedTuple):
+    """What the trials of one experiment share."""
+
+    ways: tuple[Way, ...]  # one per mission
+    samples: dict[str, JointSample]  # of each road condition
+
+
+class AbstractTrials:
+    """Work: some trials of one algorithm under one road condition; missions take turns."""
+
+    isolated = False
+
+    def prepare(self, shared: Json) -> Ground:
+        """Return map, missions and learned model."""
+        preset = preset_named(shared["preset"])
+        network = load_map(shared["map"], preset.segment_length)
+        world = read_world(shared["world"])
+        ways = tuple(_way(network, preset, route, seed) for seed, route in enumerate(shared["routes"], shared["seed"]))
+        samples = {name: joint_sample(world, name, preset) for name in world["conditions"]}
+        return Ground(ways, samples)
+
+    def run(self, prepared: Ground, arguments: Json) -> Json:
+        """Return how each trial ended."""
+        communicate = communication(arguments["algorithm"], arguments["beta"])
+        sample = prepared.samples[arguments["condition"]]
+        memories = [PlanMemory(way.planner, way.length) for way in prepared.ways]
+        trials = range(arguments["first"], arguments["first"] + arguments["count"])
+        ends = []
+        for trial in trials:
+            mission = trial % len(prepared.ways)
+            way = prepared.ways[mission]
+            world = AbstractWorld(way.length.__getitem__, sample, f"{arguments['draws']}/{trial}")
+            ends.append((_driven(way, memories[mission], world, communicate), world))
+        return {
+            "status": [status for status, _ in ends],
+            "distance": [round(world.distance, 3) for _, world in ends],
+            "collisions": [world.collisions for _, world in ends],
+            "stops": [world.stops for _, world in ends],
+            "plans": {
+                "made": sum(memory.made for memory in memories),
+                "proved": sum(memory.proved for memory in memories),
+                "mismatches": sum(memory.mismatches for memory in memories),
+            },
+        }
+
+
+def _way(network: RoadNetwork, preset: Preset, route: Sequence[str], seed: int) -> Way:
+    start, goal = route
+    request = service_request(network, start, (goal,), (), seed)
+    paths = PathPlanner(network, StateMapping(network, request, preset, seed))
+    return Way(request, Domain(network, request), LazyCost(paths.path_length), SearchPlanner(network, preset))
+
+
+def _driven(way: Way, memory: PlanMemory, world: AbstractWorld, communicate: Communicate) -> str:
+    """Run one trial and return its status."""
+    mind = Deliberation(way.request, way.domain, memory, way, world)
+    try:
+        return STATUS[_last(run_tmpud(way.domain.start_state(), mind, communicate))]
+    except NoPlanError:
+        return "NO_PLAN"
+
+
+def _last(run: Generator[Event, Any, Outcome]) -> Outcome:
+    """Return how a run ends; its events are of no interest."""
+    while True:
+        try:
+            next(run)
+        except StopIteration as end:
+            return end.value  # type: ignore[no-any-return]

@@ -1,0 +1,117 @@
+"""The paper's abstract-simulation figure: five algorithms under four road conditions, 80,000 trials."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import asdict, dataclass
+from itertools import product
+from typing import Any
+
+from tmpud.errors import RequestError
+from tmpud.experiments.running.tasks import DONE, Record, Task, digest
+from tmpud.experiments.statistics.paper_numbers import ALGORITHMS
+from tmpud.experiments.statistics.rows import TrialRow
+from tmpud.experiments.worlds.models import CONDITIONS, SHIPPED, read_world
+from tmpud.roads.places import RANDOM
+from tmpud.roads.towns import PAPER_MISSIONS
+
+CHUNK = 250  # trials of a task
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Figure4:
+    """How much of the figure is driven, and where."""
+
+    trials: int = 4000  # per algorithm and road condition
+    batches: int = 4
+    map: str = "millbrook"
+    missions: str = "paper"  # or "random:N": trials take turns among N of them
+    preset: str = "tmpud"
+    seed: int = 1000
+    world: str = SHIPPED  # or a file that learn-world wrote
+
+    def to_json(self) -> dict[str, Any]:
+        return asdict(self)
+
+    @classmethod
+    def from_json(cls, row: Mapping[str, Any]) -> Figure4:
+        """Return the figure that ``to_json`` described."""
+        return cls(**row)
+
+    def tasks(self) -> list[Task]:
+        """Return all tasks; RequestError for what cannot be run."""
+        if self.trials % self.batches:
+            raise RequestError(f"{self.trials} trials cannot be split into {self.batches} batches")
+        shared = {
+            "map": self.map,
+            "routes": self._routes(),
+            "seed": self.seed,
+            "preset": self.preset,
+            "world": self.world,
+            "learnt": digest(read_world(self.world)["conditions"]),
+        }
+        return [self._task(shared, *which) for which in product(CONDITIONS, ALGORITHMS, self._chunks())]
+
+    def rows(self, records: Iterable[Record]) -> list[TrialRow]:
+        """Return one row for each trial whose task gave a result, and one with the fault for each other."""
+        by_key = {record.key: record for record in records}
+        return [row for task in self.tasks() if task.key in by_key for row in self._rows(task, by_key[task.key])]
+
+    def _routes(self) -> list[tuple[str, str]]:
+        if self.missions == "paper" and self.map in PAPER_MISSIONS:
+            mission = PAPER_MISSIONS[self.map]
+            return [(mission.start, mission.goal)]
+        kind, _, count = self.missions.partition(":")
+        if kind == RANDOM and count.isdigit() and int(count):
+            return [(RANDOM, RANDOM)] * int(count)
+        raise RequestError(f"missions are 'paper' or 'random:N', and {self.map} has no {self.missions!r}")
+
+    def _chunks(self) -> Iterator[range]:
+        size = self.trials // self.batches
+        for batch in range(self.batches):
+            for first in range(batch * size, (batch + 1) * size, CHUNK):
+                yield range(first, min(first + CHUNK, (batch + 1) * size))
+
+    def _task(self, shared: dict[str, Any], condition: str, algorithm: str, trials: range) -> Task:
+        name, _, beta = algorithm.rstrip(")").partition("(")
+        return Task(
+            key=f"{condition}/{algorithm}/{trials.start:05}",
+            work="abstract",
+            shared=shared,
+            arguments={
+                "condition": condition,
+                "algorithm": name,
+                "beta": float(beta or 0.0),
+                "draws": f"{self.seed}/{condition}",
+                "first": trials.start,
+                "count": len(trials),
+            },
+        )
+
+    def _rows(self, task: Task, record: Record) -> Iterator[TrialRow]:
+        condition, algorithm, _ = task.key.split("/")
+        first, count = task.arguments["first"], task.arguments["count"]
+        for i in range(count):
+            result = {name: values[i] for name, values in record.result.items() if name in _PER_TRIAL}
+            collisions, stops = result.get("collisions", 0), result.get("stops", 0)
+            yield TrialRow(
+                condition=condition,
+                algorithm=algorithm,
+                trial=first + i,
+                batch=(first + i) // (self.trials // self.batches),
+                status=result["status"] if record.status == DONE else record.status,
+                distance=result.get("distance", 0.0),
+                unsafe=bool(collisions or stops),
+                details={"collisions": {"merge": collisions}, "forced_stops": 0 if collisions else stops},
+            )
+
+
+_PER_TRIAL = ("status", "distance", "collisions", "stops")
+
+
+DEVIATIONS = (
+    "The world models were learned by tmpud learn-world in SUMO; the paper's, learned in CARLA, are not published.",
+    "The models keep the joint sample of Safe and outcome of each forced merge; the paper names probabilities only.",
+    "A merge draws one pair by trial, place and visit, the same for all algorithms; only merges carry a risk.",
+    "Plans come from A* with the planner's own order of plans; a share of them is proved again by clingo.",
+)

@@ -1,0 +1,1 @@
+"""The abstract simulation's world models, and how they are learned."""
