@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: demo test check pytest verify town picture clean
+.PHONY: demo test check pytest verify bench town picture clean
 
 demo: $(VENV)/.installed
 	$(BIN)/tmpud demo
@@ -22,6 +22,9 @@ pytest: $(VENV)/.developing
 
 verify: $(VENV)/.developing
 	$(BIN)/python -m tools.verify
+
+bench: $(VENV)/.developing
+	$(BIN)/python -m benchmarks.full_step
 
 town: $(VENV)/.developing
 	$(BIN)/python tools/build_towns.py
