@@ -8,11 +8,14 @@ import pytest
 
 from tests.simulators.crowded import CrowdedSumo, Neighbour
 from tmpud.errors import InvalidStateError, SimulatorError
+from tmpud.judging.boxes import box_of, overlapping
 from tmpud.roads import load_map
 from tmpud.roads.network import RoadNetwork
 from tmpud.scene import Control, Scene
+from tmpud.simulators import sumo
 from tmpud.simulators.sumo import SumoSimulator
 from tmpud.simulators.sumo_reader import DT
+from tmpud.simulators.traffic import Spot
 
 Start = Callable[..., SumoSimulator]
 COAST = Control(0.0, 0.0)
@@ -216,3 +219,31 @@ def _gap(scene: Scene) -> float:
     """Return the way from the follower's front bumper to the ego's rear one [m]."""
     ego = scene.ego
     return ego.pose.x - float(scene.others.x[0]) - (ego.length + float(scene.others.length[0])) / 2
+
+
+class JammedSumo(SumoSimulator):
+    """A queue stands at the ego's place, and beside it one who wants to change into any gap there."""
+
+    def _await(self, spot: Spot) -> str | None:
+        road, vehicle = self._network.lanes[spot.lane].edge, self._sumo.vehicle
+        self._sumo.route.add("on", [road])
+        for name, lane, ahead in [("before", 0, 9.0), ("there", 0, 2.0), ("behind", 0, -7.0), ("beside", 1, 2.0)]:
+            vehicle.add(name, "on", departLane=str(lane), departPos=str(spot.station + ahead))
+            vehicle.moveTo(name, f"{road}_{lane}", spot.station + ahead)
+            vehicle.setSpeed(name, 0.0)
+            vehicle.setLaneChangeMode(name, 0)
+        vehicle.changeLane("beside", 0, 1000.0)
+        vehicle.setLaneChangeMode("beside", 512)  # when there is room
+        return None
+
+
+def test_in_a_standing_queue_the_ego_takes_a_place_that_nobody_slips_into(
+    blocks: RoadNetwork, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sumo, "PATIENCE", 1.0)
+    with JammedSumo(blocks, traffic=0, seed=1, warm_up=0.0) as town:
+        scene = town.reset("a_0", 40.0)
+        assert "beside" in scene.others.ids
+        for _ in range(20):
+            assert not overlapping(box_of(scene.ego), scene.others).size
+            scene = town.step(Control(-3.0, 0.0))

@@ -129,8 +129,7 @@ class SumoSimulator:
     def _appear(self, lane: str, station: float) -> Scene:
         pose = self._network.lanes[lane].centre.pose_at(station)
         car = self._await(Spot(lane, station))
-        if car is None:
-            self._clear(pose)
+        leaving = [car] if car else self._standing(pose)
         edge = self._network.lanes[lane].edge
         index = self._network.lanes[lane].index
         self._sumo.vehicletype.copy("DEFAULT_VEHTYPE", "ego")
@@ -147,8 +146,8 @@ class SumoSimulator:
         self._ego = VehicleState(EGO_ID, pose, lane, speed=speed, length=self._limits.length, width=self._limits.width)
         self._place(self._ego)
         self._advance()
-        if car:  # not sooner, or another would change lanes into the gap
-            self._cars.move(car, pose, self.everyone())
+        for name in leaving:  # not sooner, or another would change lanes into the gap
+            self._cars.move(name, pose, self.everyone())
         self._sumo.vehicle.subscribeContext(
             EGO_ID, self._sumo.CMD_GET_VEHICLE_VARIABLE, SENSING_RANGE, self._reader.fields
         )
@@ -225,15 +224,14 @@ class SumoSimulator:
         if self._steps % EXTEND_EVERY == 0:
             self._cars.extend_routes()
 
-    def _clear(self, pose: Pose) -> None:
-        """Wait until the ego's place is free, at most PATIENCE seconds, then take away who stands there."""
+    def _standing(self, pose: Pose) -> list[str]:
+        """Wait until the ego's place is free, at most PATIENCE seconds, and return who stands there then."""
         for _ in range(round(PATIENCE)):
             if not standing_at(self.everyone(), pose):
-                return
+                break
             for _ in range(round(1 / DT)):
                 self._advance()
-        for vehicle in standing_at(self.everyone(), pose):
-            self._sumo.vehicle.remove(vehicle)
+        return standing_at(self.everyone(), pose)
 
     def _scene(self) -> Scene:
         seen: dict[str, dict[int, Any]] = self._sumo.vehicle.getContextSubscriptionResults(EGO_ID)
