@@ -38,6 +38,7 @@ SECTIONS: dict[str, Callable[[Options], list[Figure]]] = {
     "same-results": paper.same_results,
     "missions": missions.missions,
     "table1": paper.table1,
+    "table1-presets": paper.table1_presets,
 }  # the quick ones first
 USED = {
     "plans": ("graphs",),
@@ -57,6 +58,7 @@ USED = {
     "same-results": ("same_trials",),
     "missions": ("missions", "traffic", "given_maps"),
     "table1": ("table_trials",),
+    "table1-presets": ("table_trials",),
 }  # the options that change a section
 
 

@@ -30,6 +30,11 @@ class Check(NamedTuple):
         """Whether the foretold share lies within the town's 95 % interval."""
         return None if self.foretold is None else self.seen.low <= self.foretold <= self.seen.high
 
+    @property
+    def off(self) -> float | None:
+        """By how much the foretold share is above the town's."""
+        return None if self.foretold is None else self.foretold - self.seen.value
+
     def to_json(self) -> dict[str, Any]:
         return {**self._asdict(), "seen": self.seen.to_json(), "holds": self.holds}
 
@@ -67,7 +72,7 @@ def check_table(found: Iterable[Check]) -> Table:
             NOTHING if check.foretold is None else f"{check.foretold:.3f}",
             f"{check.seen.value:.3f} [{check.seen.low:.3f}, {check.seen.high:.3f}]",
             NOTHING if check.holds is None else "yes" if check.holds else "no",
-            NOTHING if check.foretold is None else f"{check.foretold - check.seen.value:+.3f}",
+            NOTHING if check.off is None else f"{check.off:+.3f}",
         )
         for check in found
     )
