@@ -3,6 +3,7 @@ from __future__ import annotations
 import errno
 import json
 import os
+from dataclasses import replace
 from pathlib import Path
 
 import grimp
@@ -13,8 +14,8 @@ from tests.experiments.running.works import tasks
 from tmpud.errors import FolderError, RunFileError
 from tmpud.experiments.running import store
 from tmpud.experiments.running.manifest import MANIFEST, SHOWS_ONLY, Experiment, code_digest
-from tmpud.experiments.running.store import RESULTS, TIMING, Store, read_results
-from tmpud.experiments.running.tasks import DONE, WORK, Record
+from tmpud.experiments.running.store import RESULTS, TIMING, Store, provenance, read_results
+from tmpud.experiments.running.tasks import DONE, SIM_CRASH, WORK, Record
 
 TRY = Experiment(name="try", options={"trials": 3, "beta": [0.1, 0.3]}, command="tmpud try --jobs 2")
 TASKS = tasks(3)
@@ -124,6 +125,13 @@ def test_results_without_a_manifest_are_not_taken_for_ones_own(tmp_path: Path) -
 def test_there_are_no_results_where_there_is_nothing(tmp_path: Path) -> None:
     with pytest.raises(RunFileError, match="no results"):
         read_results(tmp_path / "none")
+
+
+def test_a_report_says_how_many_tasks_ended_in_a_tool_fault(tmp_path: Path) -> None:
+    crashed = replace(RECORDS[1], status=SIM_CRASH)
+    with Store(tmp_path, TRY, TASKS) as open_store:
+        open_store.append([RECORDS[0], crashed])
+    assert provenance(read_results(tmp_path))["tasks"].startswith("1 of 3 done, 1 SIM_CRASH (digest ")
 
 
 def test_wall_clock_times_are_beside_the_results(tmp_path: Path) -> None:

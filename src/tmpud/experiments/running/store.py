@@ -6,6 +6,7 @@ import fcntl
 import json
 import os
 import time
+from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
@@ -15,7 +16,7 @@ from typing import IO, Any, Self
 from tmpud.errors import FolderError
 from tmpud.experiments.running import lines
 from tmpud.experiments.running.manifest import Experiment, claim, describe, read_manifest, sync_folder
-from tmpud.experiments.running.tasks import Json, Record, Task, results_hash
+from tmpud.experiments.running.tasks import DONE, Json, Record, Task, results_hash
 
 RESULTS = "results.jsonl"
 TIMING = "timing.jsonl"  # wall-clock times, in no hash
@@ -49,13 +50,16 @@ def read_results(folder: Path) -> Results:
 def provenance(results: Results) -> dict[str, str]:
     """Return what a report says of what was run."""
     manifest = results.manifest
-    tasks = manifest["tasks"]
+    tasks, ended = manifest["tasks"], Counter(record.status for record in results.records)
+    counts = f"{ended.pop(DONE, 0)} of {tasks['count']} done" + "".join(
+        f", {n} {name}" for name, n in sorted(ended.items())
+    )
     return {
         "begun": manifest["begun"],
         **{name: _said(value) for name, value in manifest["options"].items()},
         "versions": ", ".join(f"{name} {version}" for name, version in manifest["versions"].items()),
         "code": manifest["code"],
-        "tasks": f"{len(results.records)} of {tasks['count']} done (digest {tasks['digest']})",
+        "tasks": f"{counts} (digest {tasks['digest']})",
         "results": results_hash(results.records),
     }
 
