@@ -6,11 +6,10 @@ in the frame of road 0, so that one network serves planner, estimator and judge 
 
 from __future__ import annotations
 
-import contextlib
-import math
 import random
 import tempfile
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import TracebackType
@@ -22,10 +21,11 @@ from tmpud.errors import SimulatorError
 from tmpud.geometry import Pose
 from tmpud.roads.sumo_net import read_sumo_net
 from tmpud.scene import Control, Scene, Vehicles, VehicleState
+from tmpud.simulators import sumo_ego
 from tmpud.simulators.cars import TYPE
 from tmpud.simulators.local_roads import APART, LANES, WIDTH, lane_name, road_name, write_net
 from tmpud.simulators.sumo import JOINT
-from tmpud.simulators.sumo_process import start
+from tmpud.simulators.sumo_process import ending, start
 from tmpud.simulators.sumo_reader import DT, EGO_ID, SumoReader
 from tmpud.simulators.traffic import TrafficRules
 
@@ -134,13 +134,8 @@ class LocalRoads:
     ) -> None:
         self.close()
 
-    @contextlib.contextmanager
-    def _errors(self) -> Iterator[None]:
-        try:
-            yield
-        except (self._sumo.TraCIException, self._sumo.FatalTraCIError) as error:
-            self.close()
-            raise SimulatorError(f"SUMO failed after {self._steps} local steps: {error}") from error
+    def _errors(self) -> AbstractContextManager[None]:
+        return ending(self.close, lambda: f"{self._steps} local steps")
 
     # Spawning --------------------------------------------------------------------------------------------------
 
@@ -148,9 +143,7 @@ class LocalRoads:
         types = self._sumo.vehicletype
         types.copy("DEFAULT_VEHTYPE", TYPE)
         types.setMinGap(TYPE, TRAFFIC.min_gap)
-        types.copy("DEFAULT_VEHTYPE", "ego")
-        types.setLength("ego", EGO.length)
-        types.setWidth("ego", EGO.width)
+        sumo_ego.define(self._sumo, EGO)
 
     def _spawn(self, road: int) -> None:
         """Put an ego on one of a road's lanes, and its neighbours around it."""
@@ -163,9 +156,8 @@ class LocalRoads:
         )
         self._sumo.route.add(name, [name])
         front = self._law.ego_station + EGO.length / 2
-        self._add(_ego_id(road), road, origin, front, TRAFFIC.wished_speed, "ego")
-        self._sumo.vehicle.setSpeedMode(_ego_id(road), 0)
-        self._sumo.vehicle.setLaneChangeMode(_ego_id(road), 0)
+        self._add(_ego_id(road), road, origin, front, TRAFFIC.wished_speed, sumo_ego.TYPE)
+        sumo_ego.take_over(self._sumo, _ego_id(road))
         self._neighbours[road] = []
         for number, (lane, centre) in enumerate(self._places(origin)):
             wish = TRAFFIC.wished_speed * self._rng.uniform(1 - TRAFFIC.spread, 1 + TRAFFIC.spread)
@@ -206,15 +198,13 @@ class LocalRoads:
 
     def _place(self, road: int) -> None:
         """Command SUMO to have the ego's front bumper where its pose says after the next step."""
-        ego, vehicle = self._egos[road], _ego_id(road)
-        x, y = _front(ego)
-        angle = 90.0 - math.degrees(ego.pose.heading)
-        self._sumo.vehicle.moveToXY(vehicle, road_name(road), self._lane(road), x, y + road * APART, angle, keepRoute=2)
-        self._sumo.vehicle.setSpeed(vehicle, ego.speed)
+        x, y = sumo_ego.front_bumper(self._egos[road])
+        lane = lane_name(road, self._lane(road))
+        sumo_ego.move(self._sumo, _ego_id(road), self._egos[road], lane, (x, y + road * APART))
 
     def _lane(self, road: int) -> int:
         """Return the lane of the ego's front bumper, as ``SumoSimulator`` finds it on the lanes announced to it."""
-        _, y = _front(self._egos[road])
+        _, y = sumo_ego.front_bumper(self._egos[road])
         origin = self._origins[road]
         off = {lane: abs(y - (lane + 0.5 - LANES / 2) * WIDTH) for lane in (origin, 1 - origin)}
         return 1 - origin if off[1 - origin] < min(off.values()) + JOINT else origin
@@ -222,11 +212,6 @@ class LocalRoads:
 
 def _ego_id(road: int) -> str:
     return f"{EGO_ID}{road}"
-
-
-def _front(ego: VehicleState) -> tuple[float, float]:
-    x, y, heading = ego.pose
-    return x + ego.length / 2 * math.cos(heading), y + ego.length / 2 * math.sin(heading)
 
 
 def _apart(places: Sequence[tuple[int, float]], distance: float) -> bool:

@@ -9,7 +9,8 @@ from __future__ import annotations
 import contextlib
 import math
 import random
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
+from contextlib import AbstractContextManager
 from dataclasses import replace
 from types import TracebackType
 from typing import Any, Self
@@ -19,8 +20,9 @@ from tmpud.errors import SimulatorError
 from tmpud.geometry import Polyline, Pose
 from tmpud.roads.network import RoadNetwork
 from tmpud.scene import Control, Scene, Vehicles, VehicleState
+from tmpud.simulators import sumo_ego
 from tmpud.simulators.cars import SENSING_RANGE, Cars, standing_at
-from tmpud.simulators.sumo_process import start
+from tmpud.simulators.sumo_process import ending, start
 from tmpud.simulators.sumo_reader import DT, EGO_ID, SumoReader
 from tmpud.simulators.traffic import Circulation, Spot, TrafficRules
 from tmpud.symbols import ServiceRequest
@@ -115,14 +117,8 @@ class SumoSimulator:
     ) -> None:
         self.close()
 
-    @contextlib.contextmanager
-    def _errors(self) -> Iterator[None]:
-        """Turn what libsumo raises into SimulatorError, and end the simulation."""
-        try:
-            yield
-        except (self._sumo.TraCIException, self._sumo.FatalTraCIError) as error:
-            self._sumo.close()
-            raise SimulatorError(f"SUMO failed after {self._steps} steps: {error}") from error
+    def _errors(self) -> AbstractContextManager[None]:
+        return ending(self._sumo.close, lambda: f"{self._steps} steps")
 
     # Inside ----------------------------------------------------------------------------------------------------
 
@@ -132,13 +128,10 @@ class SumoSimulator:
         leaving = [car] if car else self._standing(pose)
         edge = self._network.lanes[lane].edge
         index = self._network.lanes[lane].index
-        self._sumo.vehicletype.copy("DEFAULT_VEHTYPE", "ego")
-        self._sumo.vehicletype.setLength("ego", self._limits.length)
-        self._sumo.vehicletype.setWidth("ego", self._limits.width)
+        sumo_ego.define(self._sumo, self._limits)
         self._sumo.route.add("ego", [edge])
-        self._sumo.vehicle.add(EGO_ID, "ego", typeID="ego", departLane=str(index), departPos=f"{station:.2f}")
-        self._sumo.vehicle.setSpeedMode(EGO_ID, 0)
-        self._sumo.vehicle.setLaneChangeMode(EGO_ID, 0)
+        self._sumo.vehicle.add(EGO_ID, "ego", typeID=sumo_ego.TYPE, departLane=str(index), departPos=f"{station:.2f}")
+        sumo_ego.take_over(self._sumo, EGO_ID)
         room = self._network.lanes[lane].length - station - self._limits.length
         speed = min(self._rules.wished_speed, self._network.lanes[lane].speed, math.sqrt(2 * GENTLE * max(room, 0.0)))
         speed = min(speed, self._sumo.vehicle.getSpeed(car)) if car else speed
@@ -195,18 +188,11 @@ class SumoSimulator:
                 return
 
     def _place(self, ego: VehicleState) -> None:
-        """Command SUMO to have the ego's front bumper where its pose says after the next step.
-
-        SUMO is told the lane, which it would guess wrong where ways through a junction run side by side.
-        """
+        """Command SUMO to have the ego's front bumper where its pose says after the next step."""
         self._keep_route()
-        x, y, heading = ego.pose
-        x, y = x + ego.length / 2 * math.cos(heading), y + ego.length / 2 * math.sin(heading)
-        self._at = self._nearest(x, y)
-        edge, _, index = self._way[self._at][0].rpartition("_")
-        angle = 90.0 - math.degrees(heading)
-        self._sumo.vehicle.moveToXY(EGO_ID, edge, int(index), x, y, angle, keepRoute=2)
-        self._sumo.vehicle.setSpeed(EGO_ID, ego.speed)
+        front = sumo_ego.front_bumper(ego)
+        self._at = self._nearest(*front)
+        sumo_ego.move(self._sumo, EGO_ID, ego, self._way[self._at][0], front)
 
     def _nearest(self, x: float, y: float) -> int:
         """Return which of the announced lanes is nearest to a point, the last of those that are equally near.

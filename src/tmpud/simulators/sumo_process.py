@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import sys
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import ModuleType
 
@@ -40,3 +41,14 @@ def start(network: RoadNetwork, seed: int, collision_action: str = "none") -> Mo
     except Exception as error:  # libsumo's own class cannot be named before it is imported
         raise SimulatorError(f"SUMO does not start on {network.source}: {error}") from error
     return libsumo
+
+
+@contextlib.contextmanager
+def ending(close: Callable[[], None], when: Callable[[], str]) -> Iterator[None]:
+    """Turn what libsumo raises into SimulatorError that says when it came, and end the simulation."""
+    libsumo = imported()
+    try:
+        yield
+    except (libsumo.TraCIException, libsumo.FatalTraCIError) as error:
+        close()
+        raise SimulatorError(f"SUMO failed after {when()}: {error}") from error
