@@ -7,8 +7,10 @@ import pytest
 from tmpud.geometry import Pose
 from tmpud.roads import load_map
 from tmpud.scene import Control, Vehicles
-from tmpud.simulators.cars import standing_at
+from tmpud.simulators import cars as cars_module
+from tmpud.simulators.cars import SENSING_RANGE, standing_at
 from tmpud.simulators.sumo import SumoSimulator
+from tmpud.simulators.sumo_reader import DT
 from tmpud.simulators.traffic import TrafficRules
 
 
@@ -24,6 +26,27 @@ def test_the_ego_takes_the_place_of_a_car_in_the_flow_and_another_starts_elsewhe
         for _ in range(400):  # it may have to wait until there is room for it
             town.step(Control(-3.0, 0.0))
         assert set(town.everyone().ids) == before - {gone} | {"car25"}
+
+
+def test_a_car_stuck_out_of_sight_starts_anew_elsewhere_and_one_in_sight_stays(
+    blocks_net: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(cars_module, "STUCK", 20.0)
+    with SumoSimulator(load_map(blocks_net), traffic=6, seed=1, warm_up=20.0) as town:
+        ego = town.reset("a_0", 20.0).ego.pose
+        cars = town.everyone()
+        seen = {
+            name: math.hypot(x - ego.x, y - ego.y) < SENSING_RANGE
+            for name, x, y in zip(cars.ids, cars.x, cars.y, strict=True)
+        }
+        for name in cars.ids:
+            town._sumo.vehicle.setSpeed(name, 0.0)
+        for _ in range(round(26.0 / DT)):
+            town.step(Control(-3.0, 0.0))
+        stayed = set(town.everyone().ids) & set(cars.ids)
+        assert len(town.everyone()) == len(cars)
+    assert 0 < sum(seen.values()) < len(seen)
+    assert stayed == {name for name, is_seen in seen.items() if is_seen}
 
 
 @pytest.mark.parametrize("gap", [2.5, 6.0])

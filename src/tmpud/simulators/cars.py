@@ -16,6 +16,7 @@ TYPE = "car"
 SENSING_RANGE = 80.0  # [m] how far the ego sees
 ROOM_BEHIND, ROOM_AHEAD, ROOM_BESIDE = 15.0, 25.0, 2.5  # [m] around a place where a vehicle appears
 TRIES = 50  # places that are looked at for one car
+STUCK = 180.0  # [s] a car that stands for two cycles of the lights is part of a gridlock
 
 
 class Cars:
@@ -61,6 +62,16 @@ class Cars:
                 more = self._circulation.walk(route[-1], local=name in self._locals)
                 vehicle.setRoute(name, [*route[at:], *more])
 
+    def stuck(self, ego: Pose | None) -> list[str]:
+        """Return the cars out of the ego's sight that have stood for STUCK seconds."""
+        vehicle = self._sumo.vehicle
+        stood = [name for name in sorted(vehicle.getIDList()) if vehicle.getWaitingTime(name) >= STUCK]
+        return [
+            name
+            for name in stood
+            if ego is None or (name != EGO_ID and math.dist(vehicle.getPosition(name), ego[:2]) > SENSING_RANGE)
+        ]
+
     def passing(self, spot: Spot) -> str | None:
         """Return the car whose centre passed a spot in the last step."""
         vehicle = self._sumo.vehicle
@@ -70,13 +81,14 @@ class Cars:
                 return str(name)
         return None
 
-    def move(self, name: str, away_from: Pose, others: Vehicles) -> None:
+    def move(self, name: str, ego: Pose | None, others: Vehicles) -> None:
         """Take a car away; one like it starts where it is free and out of sight, on a very small map anywhere."""
         self._sumo.vehicle.remove(name)
         spots = self._circulation.places(min(TRIES, self._circulation.room))
         for spot in spots:
             pose = self._network.lanes[spot.lane].centre.pose_at(spot.station)
-            if math.dist(pose[:2], away_from[:2]) > SENSING_RANGE and not standing_at(others, pose):
+            unseen = ego is None or math.dist(pose[:2], ego[:2]) > SENSING_RANGE
+            if unseen and not standing_at(others, pose):
                 break
         self.add(spot, local=name in self._locals)
 

@@ -27,7 +27,7 @@ from tmpud.simulators.sumo_reader import DT, EGO_ID, SumoReader
 from tmpud.simulators.traffic import Circulation, Spot, TrafficRules
 from tmpud.symbols import ServiceRequest
 
-EXTEND_EVERY = 100  # steps between looks at the cars' routes
+LOOK_AFTER = 100  # steps between looks at the cars' routes, and for those that are stuck
 CYCLE = 90.0  # [s] about one cycle of the lights
 PATIENCE = 60.0  # [s] simulated
 JOINT = 0.3  # [m] two lanes that meet are equally near to a point this near to their joint
@@ -207,8 +207,11 @@ class SumoSimulator:
     def _advance(self) -> None:
         self._sumo.simulationStep()
         self._steps += 1
-        if self._steps % EXTEND_EVERY == 0:
+        if self._steps % LOOK_AFTER == 0:
             self._cars.extend_routes()
+            ego = self._ego.pose if self._ego else None
+            for name in self._cars.stuck(ego):  # SUMO's cars do not turn back from a gridlock
+                self._cars.move(name, ego, self.everyone())
 
     def _standing(self, pose: Pose) -> list[str]:
         """Wait until the ego's place is free, at most PATIENCE seconds, and return who stands there then."""
