@@ -10,7 +10,7 @@ from types import ModuleType
 from typing import Any
 
 from benchmarks import full_step, growth, highway, load, plan, safety, start
-from benchmarks.harness import DisagreementError
+from benchmarks.harness import DisagreementError, SkipError
 from benchmarks.report import as_json, headline, table, write
 
 BENCHMARKS: dict[str, ModuleType] = {
@@ -53,6 +53,9 @@ def _run(jobs: dict[str, argparse.Namespace], file: Path | None) -> int:
         except DisagreementError as error:
             print(f"benchmarks: {name}: {error}", file=sys.stderr)
             return 1
+        except SkipError as reason:
+            print(f"\n{name}: skipped, {reason}")
+            continue
         for result in results:
             print(f"\n{table(result)}", flush=True)
         found.append(as_json(name, vars(asked), results))

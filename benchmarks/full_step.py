@@ -211,7 +211,7 @@ def _play(parent: Connection, peer: Peer, mission: Mission, played: Tape) -> Non
 
 def _in_child(work: Callable[..., None], *arguments: Any) -> Connection:
     """Start a process, which ends by itself, and return this end of a pipe to it; a process holds one simulation."""
-    context = multiprocessing.get_context("fork")
+    context = multiprocessing.get_context("spawn")
     here, there = context.Pipe()
     context.Process(target=work, args=(there, *arguments), daemon=True).start()
     there.close()

@@ -23,6 +23,7 @@ from tmpud.presets import TMPUD
 GRIDS = ("grid:4:2", "grid:8:2", "grid:16:2", "grid:32:2")
 SIZES = (1, 2, 5, 10, 20, 50, 100, 200, 500)
 SAMPLES = (100, 300, 1000, 3000, 10000)
+LOOK: dict[Any, Any] = {"svg.hashsalt": "tmpud", "svg.fonttype": "none", "font.size": 8, "legend.fontsize": 6}
 BAND = 5  # actions that are drawn as one point
 Line = list[tuple[float, float]]  # points (size, median time [s])
 
@@ -31,6 +32,8 @@ def options(parser: argparse.ArgumentParser) -> None:
     plan.options(parser)
     parser.set_defaults(maps=list(GRIDS), pairs=50)
     parser.add_argument("--out", type=Path, default=Path("docs/images"), help="the folder for the picture")
+    parser.add_argument("--sizes", type=int, nargs="+", default=list(SIZES), help="numbers of vehicles")
+    parser.add_argument("--samples", type=int, nargs="+", default=list(SAMPLES), help="values of M")
     parser.add_argument("--rounds", type=int, default=20, help="scenes for each number of vehicles")
 
 
@@ -39,8 +42,8 @@ def measure(asked: argparse.Namespace) -> list[Result]:
     maps = plan.measure(asked)
     few = argparse.Namespace(instants=10, rounds=asked.rounds, seed=asked.seed)
     preset = replace(TMPUD, gate=-math.inf)
-    crowds = [safety.among(count, preset, few, slow=False) for count in SIZES]
-    samples = [safety.among(50, replace(preset, samples=count), few, slow=False) for count in SAMPLES]
+    crowds = [safety.among(count, preset, few, slow=False) for count in asked.sizes]
+    samples = [safety.among(50, replace(preset, samples=count), few, slow=False) for count in asked.samples]
     panels = {
         "lanes of the map": lines(maps, "lanes"),
         f"actions of the plan, {maps[-1].facts['lanes']} lanes": by_actions(maps[-1]),
@@ -73,18 +76,19 @@ def by_actions(result: Result) -> dict[str, Line]:
 
 
 def draw(panels: Mapping[str, Mapping[str, Line]], file: Path) -> None:
-    """Draw median CPU times, both axes logarithmic, as SVG without a date."""
+    """Draw median CPU times, both axes logarithmic, what is ours in bold."""
     import matplotlib as mpl
     from matplotlib.figure import Figure
 
     file.parent.mkdir(parents=True, exist_ok=True)
-    with mpl.rc_context({"svg.hashsalt": "tmpud", "font.size": 8}):
+    with mpl.rc_context(LOOK):
         figure = Figure(figsize=(10, 8), layout="constrained")
         for axes, (label, drawn) in zip(figure.subplots(2, 2).flat, panels.items(), strict=True):
             for name, line in drawn.items():
-                axes.loglog(*zip(*line, strict=True), marker=".", label=name)
+                width = 2.5 if "ours" in name else 1.0
+                axes.loglog(*zip(*line, strict=True), marker=".", linewidth=width, label=name)
             axes.set_xlabel(label)
             axes.set_ylabel("median CPU time [s]")
             axes.grid(alpha=0.3)
-            axes.legend(fontsize=6)
+            axes.legend()
         figure.savefig(file, metadata={"Date": None})

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import sys
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -61,18 +62,21 @@ class Result:
 def race(entries: Sequence[Entry[Case]], cases: Sequence[Case], warmup: int = 3) -> dict[str, list[float]]:
     """Return each entry's CPU time for each case [s]; raises DisagreementError.
 
-    The first ``warmup`` cases are run once more beforehand, untimed.
+    The first ``warmup`` cases are run once more beforehand, untimed. As in ``timeit``, garbage is collected in
+    between: it is everybody's.
     """
     times: dict[str, list[float]] = {entry.name: [] for entry in entries}
-    for number, case in enumerate([*cases[:warmup], *cases]):
+    early = cases[:warmup]
+    for number, case in enumerate([*early, *cases], start=-len(early)):
         answers = {}
         for entry in entries:
             work = entry.pose(case)
+            gc.disable()
             began = time.process_time()
-            answer = work()
+            answers[entry.name] = work()
             spent = time.process_time() - began
-            answers[entry.name] = answer
-            if number >= warmup:
+            gc.enable()
+            if number >= 0:
                 times[entry.name].append(spent)
         _compare(entries, answers, case)
     return times

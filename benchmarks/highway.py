@@ -1,6 +1,6 @@
 """highway-env's steps beside ours: what a second of traffic costs in another simulator of about as many vehicles.
 
-    python -m benchmarks highway --vehicles 50 --steps 2000 --rounds 3
+    python -m benchmarks highway --vehicles 50 --steps 500 --rounds 3
 
 highway-env's scene (highway-v0) is a straight road of four lanes without lights or junctions, its ego keeps lane and
 speed, and its step is set to ours, 0.05 s. It is skipped where it is not installed.
@@ -24,7 +24,7 @@ RATE = 20  # [1/s] steps
 
 def options(parser: argparse.ArgumentParser) -> None:
     full_step.options(parser)
-    parser.set_defaults(vehicles=50)
+    parser.set_defaults(vehicles=50, steps=500)
 
 
 def measure(asked: argparse.Namespace) -> list[Result]:

@@ -16,15 +16,15 @@ import argparse
 import math
 import random
 from collections.abc import Callable
+from contextlib import closing
 from functools import partial
 from itertools import islice
 from pathlib import Path
 
 from benchmarks.harness import Entry, Result, field_of, progress, race
 from benchmarks.nets import net_file
-from benchmarks.peers import asp, routers
+from benchmarks.peers import asp, routers, sumo_router
 from benchmarks.peers.compiled import Compiled
-from benchmarks.peers.sumo_router import TOLERANCE, SumoRouter
 from benchmarks.questions import Graph, Question, draw, graph_of
 from tmpud.roads import load_map
 from tmpud.symbols import OptimisticSafe
@@ -55,7 +55,7 @@ def options(parser: argparse.ArgumentParser) -> None:
 def measure(asked: argparse.Namespace) -> list[Result]:
     results = []
     for name in asked.maps:
-        with net_file(name) as file:
+        with net_file(name) as file, closing(sumo_router):
             graph = graph_of(load_map(file, asked.segment_length))
             results.append(on_map(name, graph, file, asked))
     return results
@@ -92,7 +92,8 @@ def _planners(graph: Graph, file: Path, horizon: int | None) -> Makers:
             makers[label] = partial(kind, label, graph, horizon)
     for label, library in LIBRARIES.items():
         makers[label] = partial(routers.entry, label, library, graph)
-    makers["SUMO"] = partial(routers.entry, "SUMO", partial(SumoRouter, file=file), graph, TOLERANCE)
+    sumo = partial(sumo_router.SumoRouter, file=file)
+    makers["SUMO"] = partial(routers.entry, "SUMO", sumo, graph, sumo_router.TOLERANCE)
     return {**makers, FLOOR: partial(asp.one_fact, FLOOR)}
 
 

@@ -15,7 +15,7 @@ from typing import Any
 from benchmarks.harness import ENOUGH, Result
 
 PACKAGES = ("tmpud", "clingo", "highway-env", "libsumo", "networkx", "numpy", "rustworkx", "scipy", "sumolib")
-FEW = 10  # rounds up to which each is shown
+FEW = 5  # rounds up to which each is shown
 CPUINFO = Path("/proc/cpuinfo")
 
 

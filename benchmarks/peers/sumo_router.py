@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from contextlib import redirect_stdout
 from pathlib import Path
-from sys import stderr
+from sys import modules, stderr
 from typing import Any
 
 from benchmarks.harness import SkipError
@@ -49,6 +49,13 @@ def _started(file: Path) -> Any:
     with redirect_stdout(stderr):
         import libsumo
     if libsumo.isLoaded():
-        libsumo.close()
+        raise SkipError("another simulation is loaded in this process")
     libsumo.start(["sumo", "-n", str(file), *OPTIONS])
     return libsumo
+
+
+def close() -> None:
+    """End the simulation that a router started, if one did."""
+    libsumo = modules.get("libsumo")
+    if libsumo and libsumo.isLoaded():
+        libsumo.close()
