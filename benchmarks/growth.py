@@ -76,19 +76,23 @@ def by_actions(result: Result) -> dict[str, Line]:
 
 
 def draw(panels: Mapping[str, Mapping[str, Line]], file: Path) -> None:
-    """Draw median CPU times, both axes logarithmic, what is ours in bold."""
+    """Draw median CPU times on logarithmic axes, what is ours in bold; a name has one colour everywhere."""
     import matplotlib as mpl
     from matplotlib.figure import Figure
 
     file.parent.mkdir(parents=True, exist_ok=True)
+    names = dict.fromkeys(name for drawn in panels.values() for name in drawn)
+    colours = dict(zip(names, mpl.colormaps["tab20"].colors, strict=False))  # type: ignore[attr-defined]
     with mpl.rc_context(LOOK):
-        figure = Figure(figsize=(10, 8), layout="constrained")
+        figure = Figure(figsize=(10, 10), layout="constrained")
         for axes, (label, drawn) in zip(figure.subplots(2, 2).flat, panels.items(), strict=True):
             for name, line in drawn.items():
                 width = 2.5 if "ours" in name else 1.0
-                axes.loglog(*zip(*line, strict=True), marker=".", linewidth=width, label=name)
+                axes.semilogy(*zip(*line, strict=True), marker=".", linewidth=width, color=colours[name], label=name)
+            axes.set_xscale("linear" if label.startswith("actions") else "log")
+            axes.xaxis.set_major_formatter("{x:,.0f}")
             axes.set_xlabel(label)
             axes.set_ylabel("median CPU time [s]")
             axes.grid(alpha=0.3)
-            axes.legend()
+            axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.1), ncols=3)
         figure.savefig(file, metadata={"Date": None})

@@ -71,15 +71,20 @@ def race(entries: Sequence[Entry[Case]], cases: Sequence[Case], warmup: int = 3)
         answers = {}
         for entry in entries:
             work = entry.pose(case)
-            gc.disable()
-            began = time.process_time()
-            answers[entry.name] = work()
-            spent = time.process_time() - began
-            gc.enable()
+            answers[entry.name], spent = _timed(work)
             if number >= 0:
                 times[entry.name].append(spent)
         _compare(entries, answers, case)
     return times
+
+
+def _timed(work: Callable[[], Answer]) -> tuple[Answer, float]:
+    gc.disable()
+    try:
+        began = time.process_time()
+        return work(), time.process_time() - began
+    finally:
+        gc.enable()
 
 
 def field_of(makers: Mapping[str, Callable[[], Entry[Case]]]) -> tuple[list[Entry[Case]], dict[str, str]]:
