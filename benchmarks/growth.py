@@ -40,7 +40,7 @@ def options(parser: argparse.ArgumentParser) -> None:
 def measure(asked: argparse.Namespace) -> list[Result]:
     """Measure and draw."""
     maps = plan.measure(asked)
-    few = argparse.Namespace(instants=10, rounds=asked.rounds, seed=asked.seed)
+    few = argparse.Namespace(instants=10, rounds=asked.rounds, turn=0.005, seed=asked.seed)
     preset = replace(TMPUD, gate=-math.inf)
     crowds = [safety.among(count, preset, few, slow=False) for count in asked.sizes]
     samples = [safety.among(50, replace(preset, samples=count), few, slow=False) for count in asked.samples]

@@ -59,11 +59,13 @@ class Result:
         return [mine / base for mine, base in zip(self.times[name], self.times[self.base], strict=True)]
 
 
-def race(entries: Sequence[Entry[Case]], cases: Sequence[Case], warmup: int = 3) -> dict[str, list[float]]:
+def race(
+    entries: Sequence[Entry[Case]], cases: Sequence[Case], warmup: int = 3, turn: float = 0.0
+) -> dict[str, list[float]]:
     """Return each entry's CPU time for each case [s]; raises DisagreementError.
 
-    The first ``warmup`` cases are run once more beforehand, untimed. As in ``timeit``, garbage is collected in
-    between: it is everybody's.
+    The first ``warmup`` cases are run once more beforehand, untimed. A turn does its work once, or over and over
+    until it has lasted ``turn`` [s], when the mean counts. As in ``timeit``, garbage is collected in between.
     """
     times: dict[str, list[float]] = {entry.name: [] for entry in entries}
     early = cases[:warmup]
@@ -71,18 +73,23 @@ def race(entries: Sequence[Entry[Case]], cases: Sequence[Case], warmup: int = 3)
         answers = {}
         for entry in entries:
             work = entry.pose(case)
-            answers[entry.name], spent = _timed(work)
+            answers[entry.name], spent = _timed(work, turn)
             if number >= 0:
                 times[entry.name].append(spent)
         _compare(entries, answers, case)
     return times
 
 
-def _timed(work: Callable[[], Answer]) -> tuple[Answer, float]:
+def _timed(work: Callable[[], Answer], turn: float) -> tuple[Answer, float]:
+    """Return the last answer and the mean CPU time [s]."""
     gc.disable()
     try:
-        began = time.process_time()
-        return work(), time.process_time() - began
+        began, times = time.process_time(), 0
+        while True:
+            answer = work()
+            times, spent = times + 1, time.process_time() - began
+            if spent >= turn:
+                return answer, spent / times
     finally:
         gc.enable()
 

@@ -31,6 +31,13 @@ def test_every_case_is_timed_where_the_warm_up_is_longer_than_all_cases() -> Non
     assert len(race([entry("A", float)], [1, 2], warmup=5)["A"]) == 2
 
 
+def test_a_long_turn_repeats_quick_work_and_the_mean_counts() -> None:
+    log: list[str] = []
+    (spent,) = race([entry("A", float, log)], [1], warmup=0, turn=0.002)["A"]
+    assert len(log) > 1
+    assert spent * len(log) >= 0.002
+
+
 @pytest.mark.parametrize("wrong", [2.5, 0.0, math.nan, math.inf])
 def test_an_answer_that_differs_is_an_error_that_names_who_and_what(wrong: float) -> None:
     with pytest.raises(DisagreementError, match=rf"B answers \[{wrong}\], A \[2.0\], to 2"):
