@@ -8,6 +8,7 @@ import platform
 from collections.abc import Iterator, Sequence
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
+from math import isfinite
 from pathlib import Path
 from statistics import median
 from typing import Any
@@ -55,11 +56,17 @@ def as_json(name: str, options: dict[str, Any], results: Sequence[Result]) -> di
     """Return all that a benchmark found, every round's time included."""
     return {
         "benchmark": name,
-        "options": {key: value for key, value in options.items() if isinstance(value, str | int | float | list)},
+        "options": {key: _plain(value) for key, value in options.items()},
         "machine": machine(),
         "versions": dict(_versions()),
         "results": [_result(result) for result in results],
     }
+
+
+def _plain(value: object) -> object:
+    """Return a value that JSON has, or its text."""
+    is_plain = isinstance(value, str | int | list) or (isinstance(value, float) and isfinite(value))
+    return value if is_plain else str(value)
 
 
 def _result(result: Result) -> dict[str, Any]:

@@ -1,6 +1,8 @@
 from __future__ import annotations
 
 import json
+import math
+from pathlib import Path
 
 from benchmarks.harness import Result
 from benchmarks.report import as_json, shown, table
@@ -26,8 +28,9 @@ def test_a_time_is_shown_in_its_unit() -> None:
 
 
 def test_json_says_n_versions_machine_and_each_round() -> None:
-    found = json.loads(json.dumps(as_json("plan", {"pairs": 3, "maps": ["m"]}, [RESULT])))
-    assert found["options"] == {"pairs": 3, "maps": ["m"]}
+    options = {"pairs": 3, "maps": ["m"], "segment_length": math.inf, "json": Path("found.json")}
+    found = json.loads(json.dumps(as_json("plan", options, [RESULT]), allow_nan=False))
+    assert found["options"] == {"pairs": 3, "maps": ["m"], "segment_length": "inf", "json": "found.json"}
     assert {"cores", "cpu", "python", "load", "date"} <= set(found["machine"])
     assert {"tmpud", "clingo"} <= set(found["versions"])
     (result,) = found["results"]
