@@ -3,11 +3,13 @@
     python -m benchmarks plan --maps millbrook grid:10:2 grid:20:1 --pairs 100
 
 Each case is a random pair of segments. The first plan is made, its first action's Safe falls to 0.5, and everybody
-answers the new question. Our replan has planned once before, as in a drive; everybody else starts anew with the graph
-and its weights at hand, and so does our first plan. All must find the same least total of centimetres. Maps are
-towns, net files, or ``grid:K:L`` (netgenerate: K x K crossings, L lanes each way). Each lane is one segment unless
-``--segment-length`` says otherwise. ASP by steps takes part on small maps only; there, pairs are such as a plan
-of at most ``--horizon`` actions serves.
+answers the new question. Our replan and the libraries have answered the old one just before, as in a drive, and the
+libraries have the graph at hand with its new weight; our first plan starts from the map and every Cost, ASP by steps
+from the facts of the whole map. All must find the same least total of centimetres.
+
+Maps are towns, net files, or ``grid:K:L`` (netgenerate: K x K crossings, L lanes each way). Each lane is one segment
+unless ``--segment-length`` says otherwise. ASP by steps takes part on small maps only; there, pairs are such as a
+plan of at most ``--horizon`` actions serves.
 """
 
 from __future__ import annotations
