@@ -23,8 +23,8 @@ pytest: $(VENV)/.developing
 verify: $(VENV)/.developing
 	$(BIN)/python -m tools.verify
 
-bench: $(VENV)/.developing
-	$(BIN)/python -m benchmarks.full_step
+bench: $(VENV)/.benching
+	$(BIN)/python -m benchmarks all
 
 town: $(VENV)/.developing
 	$(BIN)/python tools/build_towns.py
@@ -39,6 +39,10 @@ $(VENV)/.installed: $(BIN)/python pyproject.toml constraints.txt
 
 $(VENV)/.developing: $(BIN)/python pyproject.toml constraints.txt
 	$(PIP) install --constraint constraints.txt --editable '.[dev]'
+	touch $@ $(VENV)/.installed
+
+$(VENV)/.benching: $(BIN)/python pyproject.toml constraints.txt
+	$(PIP) install --constraint constraints.txt --editable '.[bench]'
 	touch $@ $(VENV)/.installed
 
 picture: $(VENV)/.installed

@@ -1,26 +1,24 @@
-"""What a step of the full simulation costs, against what libsumo alone needs for the same step.
+"""The full simulation's step, against what libsumo alone needs for the same step.
 
-    python -m benchmarks.full_step --vehicles 200 --steps 4000 --rounds 5
+    python -m benchmarks full_step --vehicles 200 --steps 4000 --rounds 5
 
 Each round drives one mission and notes what SUMO is told at every step. Then three processes take turns of CHUNK
 steps: ``libsumo`` steps the warmed town without the ego, ``libsumo + ego`` tells SUMO the same again and reads one
 context subscription, so that the same traffic meets the same ego, and ``stack`` drives the mission by
-``runner.drive``. Times are the CPU's, which other load disturbs less than the clock's. Ends with one JSON object.
+``runner.drive``. A round's time is the mean over its steps.
 """
 
 from __future__ import annotations
 
 import argparse
 import contextlib
-import json
 import multiprocessing
 import time
-from collections.abc import Callable, Sequence
-from importlib.metadata import version
+from collections.abc import Callable, Mapping
 from multiprocessing.connection import Connection
-from statistics import median
 from typing import Any, NamedTuple, TypeVar
 
+from benchmarks.harness import Result, SkipError, progress
 from tmpud.roads import RoadNetwork, load_map
 from tmpud.runner import Mission, drive
 from tmpud.scene import Control, Scene
@@ -30,7 +28,6 @@ from tmpud.simulators.sumo_reader import EGO_ID
 CHUNK = 250  # steps
 FIRST_SEED = 500
 SETTERS = ("setRoute", "moveToXY", "setSpeed")  # what a drive tells SUMO of vehicles
-VERSIONS = ("tmpud", "libsumo", "numpy", "clingo")
 
 Town = TypeVar("Town", bound=SumoSimulator)
 Told = tuple[str, tuple[Any, ...], dict[str, Any]]  # a function of libsumo.vehicle and its arguments
@@ -161,19 +158,46 @@ def stack(mission: Mission, played: Tape, turn: Turn) -> None:  # noqa: ARG001
 
 
 Peer = Callable[[Mission, Tape, Turn], None]
-PEERS: dict[str, Peer] = {"libsumo": bare, "libsumo + ego": with_ego, "stack": stack}
+WITH_EGO = "libsumo + ego"
+PEERS: dict[str, Peer] = {"libsumo": bare, WITH_EGO: with_ego, "stack (ours)": stack}
 
 
-def measure(mission: Mission, steps: int) -> dict[str, float]:
-    """Return each peer's mean time for a step [ms], and how many steps there were."""
+def options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--map", default="millbrook")
+    parser.add_argument("--vehicles", type=int, default=200)
+    parser.add_argument("--steps", type=int, default=2000, help="of a mission, at most")
+    parser.add_argument("--rounds", type=int, default=3, help="missions, each with its own seed")
+
+
+def measure(asked: argparse.Namespace) -> list[Result]:
+    return [among(PEERS, WITH_EGO, asked)]
+
+
+def among(peers: Mapping[str, Peer], base: str, asked: argparse.Namespace) -> Result:
+    """Let some peers take turns on random missions."""
+    rounds = []
+    for seed in range(FIRST_SEED, FIRST_SEED + asked.rounds):
+        progress(f"mission {seed}, {asked.vehicles} vehicles")
+        mission = Mission(map=asked.map, start="random", goal="random", traffic=asked.vehicles, seed=seed)
+        rounds.append(spent(mission, asked.steps, peers))
+    times = {name: [row[name] for row, _ in rounds] for name in peers}
+    facts = {**{name: vars(asked)[name] for name in ("map", "vehicles")}, "steps": [steps for _, steps in rounds]}
+    title = f"a step of {asked.vehicles} vehicles on {asked.map}"
+    return Result(title, base, times, clock="CPU time, missions' means", facts=facts)
+
+
+def spent(mission: Mission, steps: int, peers: Mapping[str, Peer]) -> tuple[dict[str, float], int]:
+    """Return each peer's mean time for a step [s], and how many steps there were."""
     played: Tape = _in_child(_send_tape, mission, steps).recv()
-    turns = {name: _in_child(_play, peer, mission, played) for name, peer in PEERS.items()}
-    spent = dict.fromkeys(PEERS, 0.0)
+    if not played.steps:
+        raise SkipError(f"mission {mission.seed} ends within {CHUNK} steps")
+    turns = {name: _in_child(_play, peer, mission, played) for name, peer in peers.items()}
+    total = dict.fromkeys(peers, 0.0)
     for _ in range(len(played.steps) // CHUNK):
         for name, child in turns.items():
             child.send(None)
-            spent[name] += child.recv()
-    return {**{name: 1000 * total / len(played.steps) for name, total in spent.items()}, "steps": len(played.steps)}
+            total[name] += child.recv()
+    return {name: seconds / len(played.steps) for name, seconds in total.items()}, len(played.steps)
 
 
 def _send_tape(parent: Connection, mission: Mission, steps: int) -> None:
@@ -187,33 +211,8 @@ def _play(parent: Connection, peer: Peer, mission: Mission, played: Tape) -> Non
 
 def _in_child(work: Callable[..., None], *arguments: Any) -> Connection:
     """Start a process, which ends by itself, and return this end of a pipe to it; a process holds one simulation."""
-    context = multiprocessing.get_context("fork")
+    context = multiprocessing.get_context("spawn")
     here, there = context.Pipe()
     context.Process(target=work, args=(there, *arguments), daemon=True).start()
     there.close()
     return here
-
-
-def main(arguments: Sequence[str] | None = None) -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--map", default="millbrook")
-    parser.add_argument("--vehicles", type=int, default=200)
-    parser.add_argument("--steps", type=int, default=4000)
-    parser.add_argument("--rounds", type=int, default=5)
-    asked = parser.parse_args(arguments)
-    rounds = []
-    for seed in range(FIRST_SEED, FIRST_SEED + asked.rounds):
-        mission = Mission(map=asked.map, start="random", goal="random", traffic=asked.vehicles, seed=seed)
-        rounds.append(measure(mission, asked.steps))
-    print(f"{'ms a step, median':<20}{'':>8}{'x libsumo + ego':>18}")
-    found: dict[str, Any] = {}
-    for name in PEERS:
-        found[name] = round(median(row[name] for row in rounds), 3)
-        found[f"{name}, ratio"] = round(median(row[name] / row["libsumo + ego"] for row in rounds), 3)
-        print(f"{name:<20}{found[name]:>8.3f}{found[f'{name}, ratio']:>18.2f}")
-    print(json.dumps({**vars(asked), **found, "each": rounds, "versions": {name: version(name) for name in VERSIONS}}))
-    return 0
-
-
-if __name__ == "__main__":
-    raise SystemExit(main())

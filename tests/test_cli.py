@@ -333,3 +333,22 @@ def test_a_drive_to_a_goal_that_is_cut_off_is_no_plan_and_says_why(spur_net: Pat
     assert "goal ab is cut off from spur_0/0" in summary["message"]
     assert "nothing leads" in summary["message"]
     assert "Traceback" not in result.err
+
+
+@pytest.mark.parametrize(
+    ("words", "needed"),
+    [(("--help",), set()), (("--version",), set()), (("plan", *MISSION), {"clingo"}), (("map", "info"), set())],
+)
+def test_a_quick_command_imports_nothing_that_it_does_not_need(words: tuple[str, ...], needed: set[str]) -> None:
+    slow = ("clingo", "libsumo", "matplotlib", "numpy", "pydantic", "rich", "yaml")
+    code = f"""
+import sys
+from tmpud.cli import main
+sys.argv[1:] = {list(words)}
+try:
+    main()
+finally:
+    print(*({set(slow)} & sys.modules.keys()), file=sys.stderr)
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert set(done.stderr.split()) == needed

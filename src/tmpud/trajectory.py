@@ -31,17 +31,15 @@ class Trajectory:
 def predict(others: Vehicles, times: FloatArray) -> FloatArray:
     """Return the poses (N, T, 3) of N vehicles that keep their speed and yaw rate (Alg. 1, line 3)."""
     turn = others.yaw_rate[:, None] * times  # (N, T)
-    half = np.where(np.abs(turn) > 1e-9, turn / 2, 1.0)
-    chord = others.speed[:, None] * times * np.where(np.abs(turn) > 1e-9, np.sin(half) / half, 1.0)
+    turning = np.abs(turn) > 1e-9
+    half = np.where(turning, turn / 2, 1.0)
+    chord = others.speed[:, None] * times * np.where(turning, np.sin(half) / half, 1.0)
     mid = others.heading[:, None] + turn / 2
-    return np.stack(
-        [
-            others.x[:, None] + chord * np.cos(mid),
-            others.y[:, None] + chord * np.sin(mid),
-            others.heading[:, None] + turn,
-        ],
-        axis=-1,
-    )
+    poses = np.empty((*turn.shape, 3))
+    poses[..., 0] = others.x[:, None] + chord * np.cos(mid)
+    poses[..., 1] = others.y[:, None] + chord * np.sin(mid)
+    poses[..., 2] = others.heading[:, None] + turn
+    return poses
 
 
 def _derivative(values: FloatArray, times: FloatArray) -> FloatArray:

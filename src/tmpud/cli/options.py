@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import MISSING, dataclass, fields, is_dataclass
 from functools import wraps
@@ -12,6 +13,14 @@ from typing import Annotated, Any, get_type_hints
 import typer
 
 TOWN = "millbrook"
+
+
+def _number(value: float) -> float:
+    """Refuse nan, which some versions of typer find in every range."""
+    if math.isnan(value):
+        raise typer.BadParameter(f"{value} is not a number.")
+    return value
+
 
 Map = Annotated[str, typer.Option("--map", "-m", help="A shipped town's name or a .net.xml(.gz) file.")]
 From = Annotated[str, typer.Option("--from", help="Start: a lane or edge id, x,y in map coordinates, or random.")]
@@ -28,7 +37,7 @@ Json = Annotated[bool, typer.Option("--json", help="Print one JSON object and no
 Out = Annotated[Path | None, typer.Option(help="The run folder to write; default: runs/<name>.")]
 Traffic = Annotated[int, typer.Option(min=0, help="How many other vehicles circulate.")]
 Algorithm = Annotated[str, typer.Option(help="tmpud, no-com or threshold.")]
-Beta = Annotated[float, typer.Option(min=0.0, max=1.0, help="The least Safe that threshold accepts.")]
+Beta = Annotated[float, typer.Option(min=0.0, max=1.0, callback=_number, help="The least Safe that threshold accepts.")]
 Missions = Annotated[str, typer.Option(help="paper, or random:N, over which the trials are spread.")]
 Jobs = Annotated[int, typer.Option(min=1, max=256, help="Worker processes; they never change a result.")]
 Folder = Annotated[

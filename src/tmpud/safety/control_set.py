@@ -64,22 +64,25 @@ class Controls(NamedTuple):
 
 def safety_index(ego: Trajectory, others: Vehicles, predicted: FloatArray, preset: Preset) -> SafetyIndex:
     """Return the index of every predicted vehicle (N, T, 3) at every instant of the ego's trajectory."""
-    ahead, left = _directions(ego.poses[:, 2])
-    ahead_i, left_i = _directions(predicted[..., 2])
-    dp = ego.poses[:, :2] - predicted[..., :2]
-    dv = ego.speeds[:, None] * ahead - others.speed[:, None, None] * ahead_i
-    turning_i = _dot(dp, left_i) * (others.speed * others.yaw_rate)[:, None]  # dp.a_i
-    d = np.hypot(dp[..., 0], dp[..., 1])
+    cos, sin = np.cos(ego.poses[:, 2]), np.sin(ego.poses[:, 2])
+    cos_i, sin_i = np.cos(predicted[..., 2]), np.sin(predicted[..., 2])
+    dx, dy = ego.poses[:, 0] - predicted[..., 0], ego.poses[:, 1] - predicted[..., 1]
+    speed_i = others.speed[:, None]
+    dvx, dvy = ego.speeds * cos - speed_i * cos_i, ego.speeds * sin - speed_i * sin_i
+    turning_i = (dy * cos_i - dx * sin_i) * (others.speed * others.yaw_rate)[:, None]  # dp.a_i
+    d = np.hypot(dx, dy)
     apart = d >= TOUCHING
     safe_d = np.where(apart, d, 1.0)
-    d_dot = np.where(apart, _dot(dp, dv) / safe_d, 0.0)
-    drifting = (_dot(dv, dv) - turning_i - d_dot**2) / safe_d  # d'' of an ego that neither accelerates nor turns
+    d_dot = np.where(apart, (dx * dvx + dy * dvy) / safe_d, 0.0)
+    drifting = (
+        dvx * dvx + dvy * dvy - turning_i - d_dot**2
+    ) / safe_d  # d'' of an ego that neither accelerates nor turns
     alpha = preset.closing_weight
     return SafetyIndex(
         phi=preset.safety_distance**2 - d**2 - alpha * d_dot,
         drift=np.where(apart, -2 * d * d_dot - alpha * drifting, np.inf),
-        by_acceleration=np.where(apart, -alpha * _dot(dp, ahead) / safe_d, 0.0),
-        by_yaw_rate=np.where(apart, -alpha * ego.speeds * _dot(dp, left) / safe_d, 0.0),
+        by_acceleration=np.where(apart, -alpha * (dx * cos + dy * sin) / safe_d, 0.0),
+        by_yaw_rate=np.where(apart, -alpha * ego.speeds * (dy * cos - dx * sin) / safe_d, 0.0),
     )
 
 
@@ -89,6 +92,8 @@ def in_use(index: SafetyIndex, ego: Trajectory, preset: Preset) -> NDArray[np.bo
     The gate looks at phi and at phi' under the control that the planned trajectory itself applies.
     """
     near = index.phi > preset.gate if preset.strict_gate else index.phi >= preset.gate
+    if preset.gate_rate == -np.inf:
+        return near
     return near & (index.rate(ego.accelerations, ego.yaw_rates) > preset.gate_rate)
 
 
@@ -107,13 +112,3 @@ def controls(preset: Preset) -> Controls:
     if not low < high or (steering and not max(-low, high) < np.pi / 2):
         raise ValueError(f"turning_range {preset.turning_range} must be (low, high), steering within a right angle")
     return Controls(preset.acceleration, preset.turning_range, steering)
-
-
-def _directions(heading: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return unit vectors (..., 2) ahead and to the left."""
-    cos, sin = np.cos(heading), np.sin(heading)
-    return np.stack([cos, sin], axis=-1), np.stack([-sin, cos], axis=-1)
-
-
-def _dot(a: FloatArray, b: FloatArray) -> FloatArray:
-    return a[..., 0] * b[..., 0] + a[..., 1] * b[..., 1]
