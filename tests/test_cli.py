@@ -111,6 +111,45 @@ def test_a_place_on_the_way_is_driven_to_first(tmpud: Tmpud) -> None:
     assert lanes[-1].startswith(GOAL)
 
 
+def test_plan_tells_what_the_proof_took_where_it_is_asked_to(tmpud: Tmpud) -> None:
+    plan, told = tmpud("plan", *MISSION, "--verbose", "--json").json, tmpud("plan", *MISSION, "--verbose").out
+    assert plan["rounds"] == 1
+    assert plan["transitions"] >= len(plan["actions"])
+    assert plan["ground_ms"] > 0 < plan["solve_ms"]
+    assert all(
+        re.search(rf"^{name} +[\d.]+$", told, re.M) for name in ("rounds", "transitions", "ground_ms", "solve_ms")
+    )
+
+
+def test_plan_keeps_rules_from_a_file(tmpud: Tmpud, tmp_path: Path) -> None:
+    first = tmpud("plan", *MISSION, "--json").json
+    turn = first["lanes"][-2].rpartition("_")[0]
+    (tmp_path / "town.lp").write_text(f':- onedge("{turn}").\n:~ onedge(E). [100@3, E]\n', encoding="utf-8")
+    ruled = tmpud("plan", *MISSION, "--rules", "town.lp", "--json", "--verbose").json
+    assert all(not lane.startswith(turn) for lane in ruled["lanes"])
+    assert ruled["cost_m"] >= first["cost_m"]
+    assert ruled["rules_m"] == len({lane.rpartition("_")[0] for lane in ruled["lanes"]})
+    assert ruled["rounds"] > 1
+    assert f"{ruled['rules_m']:.2f} m by the rules" in tmpud("plan", *MISSION, "--rules", "town.lp").out
+
+
+@pytest.mark.parametrize(
+    ("rules", "said"),
+    [
+        (b"% fine\n:- a b.", r"^town\.lp:2: syntax error"),
+        (b':- onlane("atlantis_0").', r"^town\.lp:1: lane 'atlantis_0' is not on millbrook; there is \["),
+        (b"\xff", r"^town\.lp: cannot be read"),
+        (None, r"^town\.lp: not a file"),
+    ],
+)
+def test_rules_that_cannot_be_used_are_named_with_their_line(
+    tmpud: Tmpud, tmp_path: Path, rules: bytes | None, said: str
+) -> None:
+    if rules is not None:
+        (tmp_path / "town.lp").write_bytes(rules)
+    assert re.search(said, tmpud("plan", *MISSION, "--rules", "town.lp").refusal)
+
+
 def test_a_start_that_is_the_goal_needs_no_action(tmpud: Tmpud) -> None:
     plan = tmpud("plan", "--from", START, "--to", START, "--json").json
     assert (plan["actions"], plan["lanes"], plan["cost_m"]) == ([], [], 0)
@@ -137,7 +176,7 @@ def test_plain_clingo_finds_the_same_optimum_in_what_asp_dump_writes(tmpud: Tmpu
     plan = tmpud("plan", *MISSION, "--json").json
     assert tmpud("asp", "dump", *MISSION, "--out", "program").code == 0
     files = sorted(str(path) for path in (tmp_path / "program").iterdir())
-    assert len(files) == 4
+    assert len(files) == 5
     done = subprocess.run(
         [sys.executable, "-m", "clingo", *files, "--outf=2"], capture_output=True, text=True, timeout=60, check=False
     )

@@ -4,8 +4,8 @@ What most programs need, each imported when it is first used, so that ``import t
 
 - drive a mission: ``Mission``, ``drive``, and the events it yields, ``Event`` and its kinds; ``summarise`` them,
   ``record`` them into a run folder, ``read_run`` them back
-- plan alone, without a simulator: ``Problem``, ``load_map``, ``AspPlanner``, ``PlanReport``; what plans are made of:
-  ``Action``, ``State``, ``Transition``, ``TaskPlan``
+- plan alone, without a simulator: ``Problem``, ``load_map``, ``AspPlanner``, ``PlanReport``; rules of a user's own for
+  plans: ``read_rules``; what plans are made of: ``Action``, ``State``, ``Transition``, ``TaskPlan``
 - the method's open points: ``Preset``, ``TMPUD``, ``PAPER``, ``RELEASED``
 - the parts of the motion level: ``StateMapping`` (f), ``LaneMotionPlanner`` (P^m), ``SafeSetEstimator`` (Algorithm 1)
   with its ``SafetyEstimate``
@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from tmpud.story import summarise
     from tmpud.symbols import Action, State, TaskPlan, Transition
     from tmpud.task.asp_planner import AspPlanner, PlanReport
+    from tmpud.task.rules import read_rules
 
 __version__ = "0.1.0"
 
@@ -55,6 +56,7 @@ _HOME = {
     "story": ("summarise",),
     "symbols": ("Action", "State", "TaskPlan", "Transition"),
     "task.asp_planner": ("AspPlanner", "PlanReport"),
+    "task.rules": ("read_rules",),
 }
 _MODULE = {name: f"tmpud.{module}" for module, names in _HOME.items() for name in names}
 
@@ -92,6 +94,7 @@ __all__ = [
     "Vehicles",
     "drive",
     "load_map",
+    "read_rules",
     "read_run",
     "record",
     "summarise",

@@ -9,12 +9,20 @@ class TmpudError(Exception):
     exit_code = 2
 
 
-class MapError(TmpudError):
-    """A road map that cannot be used: ``file:line: cause``."""
+class _InFileError(TmpudError):
+    """Something wrong in a user's file: ``file:line: cause``."""
 
     def __init__(self, source: str, line: int | None, cause: str) -> None:
         self.source, self.line, self.cause = source, line, cause
         super().__init__(f"{source}:{line}: {cause}" if line is not None else f"{source}: {cause}")
+
+
+class MapError(_InFileError):
+    """A road map that cannot be used."""
+
+
+class RulesError(_InFileError):
+    """A user's rules for plans that are not ASP, or more than rules may be."""
 
 
 class RequestError(TmpudError):

@@ -67,11 +67,17 @@ class Polyline:
             raise ValueError("a polyline needs two distinct points")
         self.points: Sequence[Point] = tuple(kept)
         self.stations: Sequence[float] = tuple(stations)
-        self._pieces = [_Piece.between(*piece) for piece in zip(kept, stations, kept[1:], stations[1:], strict=False)]
+        self._pieces: Sequence[_Piece] = ()  # until they are asked for: they take most of a city's memory
 
     @property
     def length(self) -> float:
         return self.stations[-1]
+
+    def _cut(self) -> Sequence[_Piece]:
+        """Return the straight pieces, from now on kept."""
+        ends = zip(self.points, self.stations, self.points[1:], self.stations[1:], strict=False)
+        self._pieces = [_Piece.between(*end) for end in ends]
+        return self._pieces
 
     def _piece(self, station: float) -> int:
         """Return the index of the piece on which a station lies; the first or last one beyond the ends."""
@@ -79,7 +85,7 @@ class Polyline:
 
     def pose_at(self, station: float, offset: float = 0.0) -> Pose:
         """Return the pose at a station, ``offset`` metres to its left; beyond the ends the end pieces go on."""
-        x, y, ex, ey, begin, _ = self._pieces[self._piece(station)]
+        x, y, ex, ey, begin, _ = (self._pieces or self._cut())[self._piece(station)]
         along = station - begin
         return Pose(x + along * ex - offset * ey, y + along * ey + offset * ex, math.atan2(ey, ex))
 
@@ -89,8 +95,9 @@ class Polyline:
         Only pieces that touch the stations ``after`` to ``before`` are looked at.
         """
         nearest, found = math.inf, (0.0, 0.0)  # (squared distance [m^2], station and side)
-        last = len(self._pieces) - 1 if before >= self.length else self._piece(before)
-        for x0, y0, ex, ey, begin, length in self._pieces[self._piece(after) : last + 1]:
+        pieces = self._pieces or self._cut()
+        last = len(pieces) - 1 if before >= self.length else self._piece(before)
+        for x0, y0, ex, ey, begin, length in pieces[self._piece(after) : last + 1]:
             dx, dy = x - x0, y - y0
             along = dx * ex + dy * ey
             along = 0.0 if along < 0.0 else length if along > length else along

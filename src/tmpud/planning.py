@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
+from tmpud.errors import RulesError
 from tmpud.motion.mapping import StateMapping
 from tmpud.motion.path_planner import PathPlanner
 from tmpud.presets import Preset, preset_named
@@ -17,6 +19,11 @@ from tmpud.task.asp_planner import AspPlanner, PlanReport
 from tmpud.task.domain import Domain
 from tmpud.task.facts import encodings
 
+if TYPE_CHECKING:
+    from tmpud.task.rules import Rules
+
+MOST_RULES = 1 << 20  # [bytes] of a file
+
 
 @dataclass(frozen=True, slots=True)
 class Problem:
@@ -27,6 +34,7 @@ class Problem:
     preset: Preset
     cost: LazyCost
     safe: OptimisticSafe
+    rules: Rules | None = None
 
     @classmethod
     def of(
@@ -39,10 +47,23 @@ class Problem:
         paths = PathPlanner(network, StateMapping(network, request, settings, seed))
         return cls(network, request, settings, LazyCost(paths.path_length), OptimisticSafe())
 
+    def with_rules(self, file: Path) -> Problem:
+        """Return the same problem under a user's rules (``task.rules``); raises RulesError."""
+        from tmpud.task.rules import read_rules  # takes its time
+
+        try:
+            if not file.is_file() or file.stat().st_size > MOST_RULES:
+                raise RulesError(str(file), None, f"not a file of at most {MOST_RULES} bytes")
+            text = file.read_text("utf-8")
+        except (OSError, UnicodeDecodeError) as error:
+            raise RulesError(str(file), None, f"cannot be read: {getattr(error, 'strerror', None) or error}") from error
+        return replace(self, rules=read_rules(text, str(file)))
+
     def solve(self) -> PlanReport:
         """Return the optimal plan from the start; raises NoPlanError."""
         start = Domain(self.network, self.request).start_state()
-        return AspPlanner(self.network, self.preset).solve(start, self.request, self.cost, self.safe)
+        planner = AspPlanner(self.network, self.preset, rules=self.rules)
+        return planner.solve(start, self.request, self.cost, self.safe)
 
     def dump(self, folder: Path) -> tuple[Path, ...]:
         """Write the encodings and the facts of the whole map into a folder; return the files for plain clingo."""

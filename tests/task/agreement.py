@@ -28,7 +28,16 @@ class Tally:
     plans: int = 0
     enumerated: int = 0
     without_plan: int = 0
+    rounds: int = 0  # the most corridors that a plan took
     mismatches: list[str] = field(default_factory=list)
+
+    def add(self, other: Tally) -> None:
+        self.graphs += other.graphs
+        self.plans += other.plans
+        self.enumerated += other.enumerated
+        self.without_plan += other.without_plan
+        self.rounds = max(self.rounds, other.rounds)
+        self.mismatches += other.mismatches
 
 
 @dataclass

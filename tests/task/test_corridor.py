@@ -8,7 +8,7 @@ from tmpud.presets import TMPUD
 from tmpud.symbols import OptimisticSafe, State
 from tmpud.task.corridor import Search, backward_tree, corridor, whole_map
 from tmpud.task.domain import Domain
-from tmpud.task.facts import facts
+from tmpud.task.facts import encoding, facts
 from tmpud.task.solver import ask
 from tmpud.task.utility import FORBIDDEN, Utility, split
 
@@ -28,9 +28,10 @@ def test_the_corridor_holds_every_optimal_plan_of_the_whole_map(seed: int) -> No
     state = State(case.request.start.segments[0], 0)
     domain, search = search_of(case, state)
     found, everything = corridor(search, state), whole_map(search, state)
-    answer = ask(facts(domain, state, {t: split(rank)[0] for t, rank in everything.ranks.items()}), everything.ranks)
-    assert (found is None) == (answer is None)
-    if found is not None and answer is not None:
+    weights = {transition: split(rank)[0] for transition, rank in everything.ranks.items()}
+    answer = ask(encoding() + facts(domain, state, weights), weights)
+    assert (found is None) == (answer.union == ())
+    if found is not None:
         assert found.optimal_transitions() == set(answer.union)
         assert set(answer.union) <= set(found.ranks) <= set(everything.ranks)
         assert split(found.optimum)[0] == answer.centimetres

@@ -6,6 +6,7 @@ import gzip
 import tempfile
 import time
 from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
 
 from tests.judging.agreement import compare_boxes_with_shapely
@@ -17,6 +18,7 @@ from tests.safety.agreement import (
     compare_sampled_with_exact,
 )
 from tests.task.agreement import Tally, compare
+from tests.task.ruled import compare as compare_ruled
 from tmpud.dynamics import EGO
 from tmpud.experiments.running.progress import Progress
 from tmpud.roads.loading import load_map, map_file
@@ -31,29 +33,29 @@ MOST_SIDEWAYS = EGO.max_lateral_acceleration
 
 def plans(options: Options) -> list[Figure]:
     """Check clingo, with and without pruning, against Dijkstra and enumeration on random road graphs."""
-    total, tally = options.graphs, Tally()
+    planners = "clingo (pruned, whole map) = search = Dijkstra = enumeration"
+    ruled = "clingo (pruned and widened, whole map) = enumeration"
+    return [
+        _agreement(f"optimal plans: {planners}, one goal and several, 3 presets", options.graphs, compare),
+        _agreement(f"optimal plans under a user's rules: {ruled}", options.graphs // 5, compare_ruled),
+    ]
+
+
+def _agreement(what: str, total: int, compare: Callable[[int, int], Tally]) -> Figure:
+    tally = Tally()
     for seed in Progress("plans", total).over(range(1, -(-total // CHUNK) + 1), CHUNK):
-        found = compare(min(CHUNK, total - tally.graphs), seed)
-        tally = Tally(
-            tally.graphs + found.graphs,
-            tally.plans + found.plans,
-            tally.enumerated + found.enumerated,
-            tally.without_plan + found.without_plan,
-            tally.mismatches + found.mismatches,
-        )
+        tally.add(compare(min(CHUNK, total - tally.graphs), seed))
     wrong = len(tally.mismatches)
     counts = f"{tally.plans:,} plans, {tally.enumerated:,} also by enumeration, {tally.without_plan:,} without any plan"
-    return [
-        Figure(
-            what="optimal plans: clingo (pruned, whole map) = Dijkstra = enumeration, one goal and several, 3 presets",
-            n=tally.graphs,
-            result=f"{wrong or none_in(tally.plans)} mismatches; {counts}",
-            target="0 mismatches",
-            holds=not wrong,
-            seed=1,
-            details={"mismatches": tally.mismatches[:20]},
-        )
-    ]
+    return Figure(
+        what=what,
+        n=tally.graphs,
+        result=f"{wrong or none_in(tally.plans)} mismatches; {counts}",
+        target="0 mismatches",
+        holds=not wrong,
+        seed=1,
+        details={"mismatches": tally.mismatches[:20]},
+    )
 
 
 def estimates(options: Options) -> list[Figure]:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
 from tmpud.errors import MapError
+from tmpud.roads.cache import cache_folder, read_cached
 from tmpud.roads.network import SEGMENT_LENGTH, RoadNetwork
 from tmpud.roads.sumo_net import read_sumo_net
 from tmpud.roads.xml_reading import shown
@@ -35,6 +37,7 @@ def map_file(name_or_path: str | Path) -> Path:
 def load_map(name_or_path: str | Path, segment_length: float = SEGMENT_LENGTH) -> RoadNetwork:
     """Return the road network of a shipped town or a net file, in segments of at most this length [m].
 
-    Raises MapError.
+    A large one is kept in the user's cache folder (``roads.cache``). Raises MapError.
     """
-    return read_sumo_net(map_file(name_or_path), segment_length=segment_length)
+    read = partial(read_sumo_net, segment_length=segment_length)
+    return read_cached(map_file(name_or_path), segment_length, read, cache_folder())

@@ -43,7 +43,7 @@ def read_sumo_net(path: Path, *, turnarounds: bool = False, segment_length: floa
     links = read_links(found["connection"], edges, rows, functions, lanes, turnarounds)
     _check_signals(links, signals)
     return RoadNetwork(
-        name=path.name.removesuffix(".gz").removesuffix(".xml").removesuffix(".net"),
+        name=net_name(path),
         lanes=lanes,
         connections=with_right_of_way(links, nodes, rows),
         junctions=_junctions(nodes, {edges[lane.edge].text(end) for lane in lanes.values() for end in ("from", "to")}),
@@ -54,6 +54,11 @@ def read_sumo_net(path: Path, *, turnarounds: bool = False, segment_length: floa
         warnings=tuple(_warnings(rows, functions, lanes, links)),
         segment_length=segment_length,
     )
+
+
+def net_name(path: Path) -> str:
+    """Return what a map from a file is called."""
+    return path.name.removesuffix(".gz").removesuffix(".xml").removesuffix(".net")
 
 
 def _by_id(elements: Iterable[Element]) -> dict[str, Element]:

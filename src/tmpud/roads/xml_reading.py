@@ -21,6 +21,7 @@ MAX_BYTES = 1 << 30  # of a file, stored or unpacked
 MAX_DEPTH = 32  # of nested elements
 MAX_NUMBER = 1e8  # no coordinate, time or speed of a map is larger
 _CHUNK = 1 << 20
+_SHORT = 20  # [characters]
 _NOT_IN_AN_ID = re.compile(r'[\s"\\\x00-\x1f\x7f]')
 
 
@@ -144,6 +145,7 @@ class _TreeBuilder:
 
     def __init__(self, source: str, root: str, keep: Collection[str]) -> None:
         self._source, self._root, self._keep = source, root, keep
+        self._known: dict[str, str] = {}  # short values, of which most come again and again: each is kept once
         self._open: list[Element | None] = []  # None: within an element that is not kept
         self.root: Element
         self._parser = expat.ParserCreate()
@@ -180,6 +182,9 @@ class _TreeBuilder:
         if parent is None or tag not in self._keep:
             self._open.append(None)
             return
+        for name, value in attributes.items():
+            if len(value) < _SHORT:
+                attributes[name] = self._known.setdefault(value, value)
         element = Element(tag, attributes, self._source, line)
         parent.children.append(element)
         self._open.append(element)

@@ -9,19 +9,23 @@ that union, the plan is optimal; the walk takes the earliest merge, then the sma
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 from tmpud.errors import NoPlanError, UtilityOverflowError
 from tmpud.presets import TMPUD, Preset
 from tmpud.roads.network import RoadNetwork
-from tmpud.symbols import Cost, Safe, ServiceRequest, State, TaskPlan, Transition
+from tmpud.symbols import Cost, Safe, ServiceRequest, State, TaskPlan
 from tmpud.task.alternatives import best_plans
-from tmpud.task.corridor import Corridor, Search, Tree, backward_tree, corridor, whole_map
+from tmpud.task.corridor import Search, Tree, backward_tree, corridor, whole_map
 from tmpud.task.domain import Domain
 from tmpud.task.explain import explain
 from tmpud.task.facts import facts
-from tmpud.task.solver import ask
+from tmpud.task.proof import Prover
 from tmpud.task.ties import walk
-from tmpud.task.utility import Utility, check_total, split
+from tmpud.task.utility import Utility, split
+
+if TYPE_CHECKING:
+    from tmpud.task.rules import Rules
 
 REMEMBERED = 16  # requests
 
@@ -36,7 +40,9 @@ class PlanReport:
     turns_m: float  # [m] added for turns
     total_cm: int  # [cm] what was minimised: the sum for each transition, rounded once
     optimal: bool  # proved
-    transitions: int = 0  # given to the solver
+    rules_m: float = 0.0  # [m] added by the user's rules
+    transitions: int = 0  # given to the solver: the corridor's size
+    rounds: int = 0  # corridors that were tried
     ground_s: float = field(default=0.0, compare=False)  # [s] wall-clock
     solve_s: float = field(default=0.0, compare=False)  # [s] wall-clock
 
@@ -54,11 +60,24 @@ class AspPlanner:
     """The TaskPlanner that proves its plans; it remembers the distances to the goals of the last requests."""
 
     def __init__(
-        self, network: RoadNetwork, preset: Preset = TMPUD, *, prune: bool = True, conflicts: int | None = None
+        self,
+        network: RoadNetwork,
+        preset: Preset = TMPUD,
+        *,
+        prune: bool = True,
+        conflicts: int | None = None,
+        rules: Rules | None = None,
     ) -> None:
-        """Take ``conflicts`` as the solver's limit, after which it gives the best plan it has, unproved."""
-        self.network, self.preset, self.prune = network, preset, prune
-        self._options = () if conflicts is None else (f"--solve-limit={conflicts}",)
+        """Take ``conflicts`` as the solver's limit, after which it gives the best plan it has, unproved.
+
+        ``rules`` are a user's own (``task.rules``): every plan keeps them, whatever state it starts from. Raises
+        RulesError where they name what is not on the map.
+        """
+        self.network, self.preset = network, preset
+        if rules:
+            rules.check(network)
+        options = () if conflicts is None else (f"--solve-limit={conflicts}",)
+        self._prover = Prover(prune, rules, options)
         self._memory: dict[ServiceRequest, _Memory] = {}
 
     def plan(self, state: State, request: ServiceRequest, cost: Cost, safe: Safe) -> TaskPlan:
@@ -74,19 +93,29 @@ class AspPlanner:
         search, utility = self._search(state, request, cost, safe)
         if state.leg == search.last:
             return report_of((), utility, optimal=True)
-        domain, given = self._memory[request].domain, self._given(search, state)
-        answer = ask(facts(domain, state, _shifted(given)), given.ranks, self._options) if given else None
-        if given is None or answer is None:
+        domain, rules = self._memory[request].domain, self._prover.rules
+        proof = self._prover.prove(domain, search, state)
+        if proof is None or not proof.union:
+            if rules and corridor(search, state):
+                raise NoPlanError(f"no plan keeps the rules of {rules.source}; without them there is one")
             raise NoPlanError(explain(domain, state, utility.rank))
-        report = report_of(walk(state, answer.union), utility, optimal=answer.optimal)
-        if report.total_cm != answer.centimetres + split(given.distance[report.plan[-1].next_state])[0]:
+        report = report_of(walk(state, proof.union), utility, optimal=proof.optimal)
+        added = proof.centimetres - report.total_cm
+        if added and rules is None:
             raise UtilityOverflowError(f"the solver's total is not the plan's: {report.total_cm} cm")
-        return replace(report, transitions=len(given.ranks), ground_s=answer.ground_s, solve_s=answer.solve_s)
+        return replace(
+            report,
+            rules_m=added / 100.0,
+            transitions=proof.transitions,
+            rounds=proof.rounds,
+            ground_s=proof.ground_s,
+            solve_s=proof.solve_s,
+        )
 
     def instance(self, state: State, request: ServiceRequest, cost: Cost, safe: Safe) -> str:
         """Return the facts that, with the package's .lp files, make plain ``clingo`` find the same optimum."""
         search, _ = self._search(state, request, cost, safe)
-        given = self._given(search, state)
+        given = corridor(search, state) if self._prover.prune else whole_map(search, state)
         weights = {transition: split(rank)[0] for transition, rank in given.ranks.items()} if given else {}
         return facts(self._memory[request].domain, state, weights)
 
@@ -122,24 +151,6 @@ class AspPlanner:
         if len(self._memory) > REMEMBERED:
             del self._memory[next(iter(self._memory))]
         return memory
-
-    def _given(self, search: Search, state: State) -> Corridor | None:
-        """Return what the solver is given."""
-        given = corridor(search, state) if self.prune else whole_map(search, state)
-        check_total(given.ranks if given else {})
-        return given
-
-
-def _shifted(given: Corridor) -> dict[Transition, int]:
-    """Return each weight with the distances from the start taken out [cm]: every plan's total shrinks by the same.
-
-    The same, because all goals in a corridor are equally far. The best plans then total 0, where the solver starts.
-    """
-    distance = {state: split(rank)[0] for state, rank in given.distance.items()}
-    return {
-        transition: split(rank)[0] + distance[transition.state] - distance[transition.next_state]
-        for transition, rank in given.ranks.items()
-    }
 
 
 def report_of(plan: TaskPlan, utility: Utility, *, optimal: bool = False) -> PlanReport:

@@ -44,7 +44,7 @@ class Corridor:
     """The transitions that can lie on a best plan, and what is known about them."""
 
     ranks: dict[Transition, int]
-    distance: dict[State, int]  # rank of the best way from the start
+    distance: dict[State, int]  # rank of the best way from the start; all goals are as near as the nearest
     optimum: int  # rank of the best plan
 
     def optimal_transitions(self) -> set[Transition]:
@@ -81,38 +81,40 @@ def backward_tree(domain: Domain, preset: Preset, cost: Cost) -> Tree:
     return Tree(floor, distance)
 
 
-def corridor(search: Search, start: State) -> Corridor | None:
-    """Return the transitions t with distance + rank(t) + bound <= optimum (A*); None where no plan exists."""
-    distance, ranks = {start: 0}, {}
-    bound, optimum = search.bound, FORBIDDEN - 1
+def corridor(search: Search, start: State, limit: int | None = None) -> Corridor | None:
+    """Return the transitions t with distance + rank(t) + bound <= limit (A*); None where no plan exists.
+
+    The limit is by default the rank of the best plan.
+    """
+    distance, touched = {start: 0}, list[tuple[Transition, int]]()
+    bound, optimum, widest = search.bound, FORBIDDEN, FORBIDDEN - 1 if limit is None else limit
     queue, done = [(bound.get(start, FORBIDDEN), start)], set[State]()
-    while queue and queue[0][0] <= optimum:
+    while queue and queue[0][0] <= widest:
         estimate, state = heappop(queue)
         if state in done:
             continue
         done.add(state)
         if state.leg == search.last:
-            optimum = min(estimate, optimum)
+            optimum = distance[state] = min(optimum, estimate)
+            widest = optimum if limit is None else limit
             continue
         for transition in search.successors(state):
-            ranks[transition] = rank = search.rank(transition)
-            following, there = transition.next_state, distance[state] + rank
-            if there < distance.get(following, FORBIDDEN) and there + bound.get(following, FORBIDDEN) <= optimum:
-                distance[following] = there
-                heappush(queue, (there + bound[following], following))
-    if optimum == FORBIDDEN - 1:
-        return None
-    return Corridor(_within(ranks, distance, bound, optimum), distance, optimum)
+            rank, following = search.rank(transition), transition.next_state
+            there = distance[state] + rank
+            onward = there + bound.get(following, FORBIDDEN)
+            if onward <= widest:
+                touched.append((transition, rank))
+                if there < distance.get(following, FORBIDDEN):
+                    distance[following] = there
+                    heappush(queue, (onward, following))
+    return None if optimum == FORBIDDEN else Corridor(_within(touched, search, distance, widest), distance, optimum)
 
 
 def _within(
-    ranks: dict[Transition, int], distance: Mapping[State, int], bound: Mapping[State, int], optimum: int
+    touched: list[tuple[Transition, int]], search: Search, distance: Mapping[State, int], limit: int
 ) -> dict[Transition, int]:
-    return {
-        transition: rank
-        for transition, rank in ranks.items()
-        if distance[transition.state] + rank + bound.get(transition.next_state, FORBIDDEN) <= optimum
-    }
+    bound = search.bound
+    return {step: rank for step, rank in touched if distance[step.state] + rank + bound[step.next_state] <= limit}
 
 
 def whole_map(search: Search, start: State) -> Corridor:

@@ -1,34 +1,63 @@
-"""The instance: what ``driving.lp`` and ``quality.lp`` take as input, written as ASP facts."""
+"""The instance: what the package's ``.lp`` files take as input, written as ASP facts."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
 from importlib.resources import files
 
 from tmpud.symbols import Action, State, Transition
 from tmpud.task.domain import Domain
 
-ENCODING = ("driving.lp", "quality.lp", "show.lp")
+DOMAIN = ("driving.lp",)
+PLANNING = ("plan.lp", "quality.lp", "show.lp")
+ENCODING = DOMAIN + PLANNING
+PLACES = ("places.lp",)
+
+Weights = Mapping[Transition, int]  # [cm]
+Quality = tuple[int, int, int]  # centimetres, merges, actions
 
 
-@cache
 def encodings() -> tuple[tuple[str, str], ...]:
     """Return name and text of each part of the encoding that comes with the package."""
-    return tuple((name, files("tmpud.task").joinpath(name).read_text("utf-8")) for name in ENCODING)
+    return tuple((name, encoding((name,))) for name in ENCODING)
 
 
 @cache
-def encoding() -> str:
-    """Return the whole encoding."""
-    return "\n".join(text for _, text in encodings())
+def encoding(names: tuple[str, ...] = ENCODING) -> str:
+    """Return some of the package's ``.lp`` files as one text, by default the whole encoding."""
+    return "\n".join(files("tmpud.task").joinpath(name).read_text("utf-8") for name in names)
 
 
-def facts(domain: Domain, state: State, weights: Mapping[Transition, int]) -> str:
-    """Return the instance for a plan from a state over the transitions that have a weight [cm], one fact a line."""
+def facts(domain: Domain, state: State, weights: Weights) -> str:
+    """Return the instance of the whole encoding for a plan from a state: roads, goals and weights, one fact a line."""
     lines = dict.fromkeys(fact for transition in weights for fact in _road(domain, transition))
-    weighed = (_weight(transition, weight) for transition, weight in weights.items())
-    return "\n".join((*lines, *_request(domain), *weighed, f"start({quote(state.segment)},{state.leg}).", ""))
+    weighed = (f"weight({spelled(transition)},{weight})." for transition, weight in weights.items())
+    return "\n".join((*lines, *_goals(domain), *weighed, *_ends(domain, state), ""))
+
+
+def steps(domain: Domain, state: State, qualities: Mapping[Transition, Quality]) -> str:
+    """Return the instance of the encoding less ``driving.lp``: what that derives, here with any qualities."""
+    can = (
+        f"can({spelled(step)},{step.next_state.leg},({centimetres},{merges},{actions}))."
+        for step, (centimetres, merges, actions) in qualities.items()
+    )
+    return "\n".join((*can, *_ends(domain, state), ""))
+
+
+def places(domain: Domain, state: State, steps: Iterable[Transition]) -> str:
+    """Return what rules may ask for beyond the instance of ``steps``: the goals, and on which lane a segment lies."""
+    segments = dict.fromkeys(end.segment for step in steps for end in (step.state, step.next_state))
+    segments[state.segment] = None
+    lanes = ((segment, domain.network.lanes[domain.network.segments[segment].lane]) for segment in segments)
+    rows = (f"lane({quote(segment)},{quote(lane.id)},{quote(lane.edge)})." for segment, lane in lanes)
+    return "\n".join((*_goals(domain), *rows, ""))
+
+
+def spelled(transition: Transition) -> str:
+    """Return the arguments that name a transition in every predicate, as clingo spells them, too."""
+    (origin, leg), action, (target, _) = transition
+    return f"{quote(origin)},{leg},{action},{quote(target)}"
 
 
 def quote(text: str) -> str:
@@ -57,14 +86,12 @@ def _road(domain: Domain, transition: Transition) -> Iterator[str]:
         yield f"connected({quote(origin)},{action},{quote(target)})."
 
 
-def _request(domain: Domain) -> Iterator[str]:
+def _goals(domain: Domain) -> Iterator[str]:
     for leg, goal in enumerate(domain.request.goals):
         yield from (f"goal({leg},{quote(segment)})." for segment in goal.segments)
         if goal.station is not None:
             yield f"position({leg})."
-    yield f"last({domain.last})."
 
 
-def _weight(transition: Transition, weight: int) -> str:
-    (origin, leg), action, (target, _) = transition
-    return f"weight({quote(origin)},{leg},{action},{quote(target)},{weight})."
+def _ends(domain: Domain, state: State) -> tuple[str, str]:
+    return f"start({quote(state.segment)},{state.leg}).", f"last({domain.last})."

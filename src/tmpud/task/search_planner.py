@@ -6,6 +6,8 @@ It searches the graph, weights and ties of ``AspPlanner``, whose answer it equal
 from __future__ import annotations
 
 from tmpud.errors import NoPlanError
+from tmpud.presets import TMPUD, Preset
+from tmpud.roads.network import RoadNetwork
 from tmpud.symbols import Cost, Safe, ServiceRequest, State
 from tmpud.task.asp_planner import AspPlanner, PlanReport, report_of
 from tmpud.task.corridor import corridor
@@ -13,7 +15,10 @@ from tmpud.task.ties import walk
 
 
 class SearchPlanner(AspPlanner):
-    """The TaskPlanner that searches; its plans are not marked as proved."""
+    """The TaskPlanner that searches; its plans are not marked as proved. It cannot keep a user's rules."""
+
+    def __init__(self, network: RoadNetwork, preset: Preset = TMPUD) -> None:
+        super().__init__(network, preset)
 
     def solve(self, state: State, request: ServiceRequest, cost: Cost, safe: Safe) -> PlanReport:
         """Return the best plan and its terms; raises NoPlanError or RequestError."""

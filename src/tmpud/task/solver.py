@@ -2,69 +2,105 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from time import perf_counter
+from typing import NamedTuple
 
 import clingo
 
-from tmpud.errors import NoPlanError
+from tmpud.errors import NoPlanError, UtilityOverflowError
 from tmpud.symbols import Transition
-from tmpud.task.facts import encoding
+from tmpud.task.facts import spelled
+from tmpud.task.utility import LIMIT
 
 # All optimal plans at once: the union of their atoms ("brave consequences").
 OPTIONS = ("--warn=none", "--opt-mode=optN", "--enum-mode=brave")
 CENTIMETRES = 3  # the priority of quality.lp
+
+Choice = Callable[[Sequence[Transition]], Transition | None]
 
 
 @dataclass(frozen=True, slots=True)
 class Answer:
     """What the solver found."""
 
-    union: tuple[Transition, ...]  # of all optimal plans; of one plan where the proof is missing
-    centimetres: int  # the least total of the instance's weights
+    union: tuple[Transition, ...]  # of all optimal plans; of one plan where the proof is missing; empty: no plan
+    centimetres: int  # the least total of the program's weights
     optimal: bool  # proved
     ground_s: float  # [s] wall-clock
     solve_s: float  # [s] wall-clock
 
 
-def ask(instance: str, transitions: Iterable[Transition], options: Sequence[str] = ()) -> Answer | None:
-    """Return the best plans of an instance, None where it has none; raises NoPlanError where a limit came first."""
-    began = perf_counter()
-    control = clingo.Control([*OPTIONS, *options])
-    control.add("base", [], encoding())
-    control.add("base", [], instance)
-    control.ground([("base", [])])
-    grounded = perf_counter()
-    found = _last_model(control)
-    if found is None:
-        return None
-    named = {(t.state.segment, t.state.leg, t.action.value, t.next_state.segment): t for t in transitions}
-    union = tuple(named[_key(atom)] for atom in found.atoms)
-    return Answer(union, found.centimetres, found.proved, grounded - began, perf_counter() - grounded)
-
-
-@dataclass(slots=True)
-class _LastModel:
-    """Keeps the last model, which is the union once optimality is proved; to iterate instead would start a thread."""
-
+class _Model(NamedTuple):
     atoms: Sequence[clingo.Symbol] = ()
     centimetres: int = 0
-    proved: bool = False
+    optimal: bool = True
 
-    def __call__(self, model: clingo.Model) -> None:
-        self.atoms, self.proved = model.symbols(shown=True), model.optimality_proven
-        self.centimetres = dict(zip(model.priority, model.cost, strict=True)).get(CENTIMETRES, 0)
+    @classmethod
+    def of(cls, model: clingo.Model) -> _Model:
+        total = dict(zip(model.priority, model.cost, strict=True)).get(CENTIMETRES, 0)
+        return cls(model.symbols(shown=True), total, model.optimality_proven)
 
 
-def _last_model(control: clingo.Control) -> _LastModel | None:
-    found = _LastModel()
-    result = control.solve(on_model=found)
+def ask(program: str, transitions: Iterable[Transition], options: Sequence[str] = ()) -> Answer:
+    """Return the best plans of a program; raises NoPlanError where a limit of the solver came first."""
+    began = perf_counter()
+    control = clingo.Control([*OPTIONS, *options])
+    control.add("base", [], program)
+    control.ground([("base", [])])
+    grounded = perf_counter()
+    model, named = _last(control), _named(transitions)
+    union = tuple(named[str(atom)] for atom in model.atoms)
+    return Answer(union, model.centimetres, model.optimal, grounded - began, perf_counter() - grounded)
+
+
+def ask_one(program: str, transitions: Iterable[Transition], choose: Choice, options: Sequence[str] = ()) -> Answer:
+    """Return one of the best plans of a program in which parts of different best plans may not fit together.
+
+    ``choose`` takes one transition out of their union, again out of the union of those that have it, and so on, until
+    it returns None. Raises NoPlanError, and UtilityOverflowError where the weights are too large to be added.
+    """
+    began = perf_counter()
+    control = clingo.Control([*OPTIONS, *options])
+    weights = _Weights()
+    control.register_observer(weights)
+    control.add("base", [], program)
+    control.ground([("base", [])])
+    grounded = perf_counter()
+    model, named = _last(control), _named(transitions)
+    weights.check()
+    union = {named[str(atom)]: atom for atom in model.atoms}
+    chosen: list[tuple[clingo.Symbol, bool]] = []
+    while model.optimal and (transition := choose(tuple(union))):
+        chosen.append((union[transition], True))
+        union = {named[str(atom)]: atom for atom in _last(control, chosen).atoms}
+    return Answer(tuple(union), model.centimetres, model.optimal, grounded - began, perf_counter() - grounded)
+
+
+class _Weights(clingo.Observer):
+    """Adds up what the ground program minimises, since the solver itself would wrap."""
+
+    def __init__(self) -> None:
+        self._totals: Counter[int] = Counter()
+
+    def minimize(self, priority: int, literals: Sequence[tuple[int, int]]) -> None:
+        self._totals[priority] += sum(weight for _, weight in literals)
+
+    def check(self) -> None:
+        if any(total >= LIMIT for total in self._totals.values()):
+            raise UtilityOverflowError("the rules add too much: all costs together must lie below 2^31")
+
+
+def _named(transitions: Iterable[Transition]) -> dict[str, Transition]:
+    return {f"do({spelled(transition)})": transition for transition in transitions}
+
+
+def _last(control: clingo.Control, assumptions: Sequence[tuple[clingo.Symbol, bool]] = ()) -> _Model:
+    """Return the last model, which is the union of the optimal ones where that is proved; empty if there is none."""
+    models: list[_Model] = []
+    result = control.solve(assumptions, on_last=lambda model: models.append(_Model.of(model)))
     if result.unknown:
         raise NoPlanError("the solver gave up at its limit of conflicts, before it found a plan")
-    return found if result.satisfiable else None
-
-
-def _key(atom: clingo.Symbol) -> tuple[str, int, str, str]:
-    origin, leg, action, target = atom.arguments
-    return origin.string, leg.number, action.name, target.string
+    return models[0] if models else _Model()

@@ -35,17 +35,21 @@ class Utility:
         """Take ``floor`` for a Cost that fell below it [m]; a transition that is not in it has no floor."""
         self._preset, self._cost, self._safe, self._floor = preset, cost, safe, floor
         self._turns = {action: _turn_cost(action, preset) for action in Action}
+        self._penalties: dict[float, float] = {}  # by Safe
 
     def terms(self, transition: Transition) -> Terms:
-        cost = max(self._cost[transition], self._floor.get(transition, -math.inf))
-        return Terms(cost, penalty(self._safe[transition], self._preset), self._turns[transition.action])
+        cost, floor = self._cost[transition], self._floor.get(transition, -math.inf)
+        safe = self._safe[transition]
+        if safe not in self._penalties:
+            self._penalties[safe] = penalty(safe, self._preset)
+        return Terms(floor if floor > cost else cost, self._penalties[safe], self._turns[transition.action])
 
     def rank(self, transition: Transition) -> int:
         """Return the rank of a transition, FORBIDDEN where it cannot be driven; the only place that rounds."""
-        terms = self.terms(transition)
-        if terms.cost == math.inf:
+        cost, safety, turns = self.terms(transition)
+        if cost == math.inf:
             return FORBIDDEN
-        return (centimetres(sum(terms), transition) << 2 * FIELD) + STEP[transition.action]
+        return (centimetres(cost + safety + turns, transition) << 2 * FIELD) + STEP[transition.action]
 
     def total(self, plan: TaskPlan) -> Terms:
         """Return the terms of a whole plan."""
@@ -73,6 +77,11 @@ def split(rank: int) -> tuple[int, int, int]:
     """Return (centimetres, merges, actions) of a rank."""
     mask = (1 << FIELD) - 1
     return rank >> 2 * FIELD, rank >> FIELD & mask, rank & mask
+
+
+def most(centimetres: int) -> int:
+    """Return the rank that no plan of at most these centimetres exceeds."""
+    return (centimetres + 1 << 2 * FIELD) - 1
 
 
 def check_total(ranks: Mapping[Transition, int]) -> None:
