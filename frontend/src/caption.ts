@@ -25,8 +25,8 @@ function told({ run, time }: View): [string, number] {
   const plan = doc.plans[number];
   const fresh = (then: number) => time - then >= -0.5 && time - then < FRESH;
   const judged = doc.judged.find((event) => fresh(event.time));
-  if (judged) return [`judged: ${judged.kind.replace("_", " ")}, blame: ${judged.blame}`, number];
   if (doc.finished && time >= doc.finished.time - 0.5) return [`the end: ${doc.finished.status}`, number];
+  if (judged) return [`judged: ${judged.kind.replace("_", " ")}, blame: ${judged.blame}`, number];
   if (!plan) return ["no plan", number];
   const change = doc.changes.find((one) => one.plan === number);
   if (change && fresh(plan.time)) return [`takes the place of plan ${doc.plans[number - 1].name}: ${change.headline}`, number];

@@ -24,7 +24,7 @@ export class Labels {
   draw(ego: Pose | null, estimate: Estimate | null, paths: [number, number][][], letters: Letter[]): void {
     const { run, time } = this.view;
     this.ctx.lineWidth = 2;
-    this.ends(paths);
+    this.ends(paths, ego);
     for (const { place, name, colour } of letters) this.disc(place, name, colour);
     if (ego) {
       const [px, py] = this.view.camera.screen(ego.x, ego.y);
@@ -46,12 +46,13 @@ export class Labels {
     this.scaleBar();
   }
 
-  private ends(paths: [number, number][][]): void {
+  private ends(paths: [number, number][][], ego: Pose | null): void {
     const first = this.view.run.doc.plans.find((plan) => plan.steps.length);
     if (!first) return;
     const start = paths[first.steps[0]]?.[0];
     const last = paths[first.steps[first.steps.length - 1]];
-    if (start) this.flag(start, "start");
+    const left = start && !(ego && Math.hypot(ego.x - start[0], ego.y - start[1]) < 20);
+    if (left) this.flag(start, "start");
     if (last?.length) this.flag(last[last.length - 1], "goal");
   }
 
