@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: demo test check pytest verify bench town picture clean
+.PHONY: demo test check pytest verify bench town page picture clean
 
 demo: $(VENV)/.installed
 	$(BIN)/tmpud demo
@@ -17,7 +17,7 @@ check: $(VENV)/.developing
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-pytest: $(VENV)/.developing
+pytest: $(VENV)/.developing $(VENV)/.browser
 	$(BIN)/pytest -n 2
 
 verify: $(VENV)/.developing
@@ -45,8 +45,17 @@ $(VENV)/.benching: $(BIN)/python pyproject.toml constraints.txt
 	$(PIP) install --constraint constraints.txt --editable '.[bench]'
 	touch $@ $(VENV)/.installed
 
+# The replay's page is tried in Debian's Chromium; where it cannot be had those tests are skipped.
+$(VENV)/.browser: | $(BIN)/python
+	command -v chromium >/dev/null || (apt-get update && apt-get install -y chromium) || echo "no chromium: its tests are skipped"
+	touch $@
+
+# Only this needs Node: the page's sources in frontend/, built into the package.
+page:
+	cd frontend && npm ci && npm run check && npm run build
+
 picture: $(VENV)/.installed
 	$(BIN)/python -m tools.picture
 
 clean:
-	rm -rf $(VENV) runs .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis
+	rm -rf $(VENV) frontend/node_modules runs .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import pytest
 
 from tests.roads.nets import CROSSING
+from tests.viewer.made_runs import recorded
 from tmpud.cli import INTERRUPTED, main
 from tmpud.errors import TmpudError
 from tmpud.roads.towns import PAPER_MISSIONS
@@ -391,3 +392,17 @@ finally:
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert set(done.stderr.split()) == needed
+
+
+def test_a_replay_is_written_beside_its_run_or_where_it_is_wanted(tmp_path: Path, tmpud: Tmpud) -> None:
+    folder = recorded(tmp_path / "run")
+    assert tmpud("replay", str(folder)).code == 0
+    wanted = tmp_path / "other" / "page.html"
+    assert str(wanted) in tmpud("replay", str(folder), "--html", str(wanted)).out
+    assert wanted.read_bytes() == (folder / "replay.html").read_bytes()
+
+
+def test_a_replay_of_no_run_is_refused(tmp_path: Path, tmpud: Tmpud) -> None:
+    result = tmpud("replay", str(tmp_path))
+    assert (result.code, result.out) == (4, "")
+    assert "no such run" in result.err

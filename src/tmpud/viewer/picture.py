@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
 
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -15,12 +14,10 @@ from matplotlib.figure import Figure
 from tmpud.events import Estimated, Event, Executed, Finished, Frame, Header, Judged, Planned
 from tmpud.geometry import Point, Polyline, Pose
 from tmpud.motion.mapping import StateMapping
-from tmpud.motion.path import outline
-from tmpud.motion.path_planner import PathPlanner
-from tmpud.presets import preset_named
 from tmpud.roads.network import RoadNetwork
 from tmpud.story import plan_name
-from tmpud.symbols import Place, ServiceRequest, State, TaskPlan
+from tmpud.symbols import State
+from tmpud.viewer.paths import mapping_of, plan_outline
 
 LOW = 0.5  # estimates below this are marked
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")  # told apart by the colour-blind
@@ -34,7 +31,7 @@ def draw_run(network: RoadNetwork, events: Iterable[Event], file: Path) -> None:
     """Draw a run's picture into a PNG or SVG file."""
     log = list(events)
     header = next(event for event in log if isinstance(event, Header))
-    mapping = _mapping(network, header)
+    mapping = mapping_of(network, header)
     figure = Figure(figsize=(13, 8.5), layout="constrained")
     FigureCanvasAgg(figure)
     grid = figure.add_gridspec(2, 2, width_ratios=(3, 2))
@@ -69,33 +66,12 @@ def draw_network(axes: Axes, network: RoadNetwork) -> None:
     axes.autoscale_view()
 
 
-def plan_outline(network: RoadNetwork, mapping: StateMapping, plan: TaskPlan) -> list[Point]:
-    """Return the points of the path a plan drives."""
-    paths = PathPlanner(network, mapping)
-    points: list[Point] = []
-    for step in plan:
-        for move in paths.moves(mapping(step.state), step) or ():
-            points += outline(move)
-    return points
-
-
 def _band(points: Iterable[Point], width: float) -> list[Point]:
     """Return the outline of a lane."""
     line = Polyline(points)
     left = [(line.pose_at(s, width / 2).x, line.pose_at(s, width / 2).y) for s in line.stations]
     right = [(line.pose_at(s, -width / 2).x, line.pose_at(s, -width / 2).y) for s in line.stations]
     return [*left, *right[::-1]]
-
-
-def _mapping(network: RoadNetwork, header: Header) -> StateMapping:
-    mission = header.mission
-    words = mission["request"]
-    request = ServiceRequest(_place(words["start"]), tuple(_place(goal) for goal in words["goals"]))
-    return StateMapping(network, request, preset_named(mission["preset"]), mission["seed"])
-
-
-def _place(words: Any) -> Place:
-    return Place(words["name"], tuple(words["segments"]), words["station"])
 
 
 def _draw_plan(axes: Axes, points: list[Point], planned: Planned, number: int) -> None:

@@ -1,0 +1,118 @@
+/** What is written over the scene, in pixels. */
+
+import type { Estimate } from "./document";
+import type { Theme } from "./palette";
+import type { Pose } from "./run";
+import type { View } from "./view";
+
+export const SHOWN_FOR = 4000; // [ms] around an event in which the scene points at it
+
+/** A plan's letter on its way. */
+export interface Letter {
+  place: [number, number]; // [px]
+  name: string;
+  colour: string;
+}
+
+export class Labels {
+  constructor(
+    private readonly ctx: CanvasRenderingContext2D,
+    private readonly view: View,
+    private readonly colours: Theme,
+  ) {}
+
+  draw(ego: Pose | null, estimate: Estimate | null, paths: [number, number][][], letters: Letter[]): void {
+    const { run, time } = this.view;
+    this.ctx.lineWidth = 2;
+    this.ends(paths, ego);
+    for (const { place, name, colour } of letters) this.disc(place, name, colour);
+    if (ego) {
+      const [px, py] = this.view.camera.screen(ego.x, ego.y);
+      const below = Math.max(20, 2.5 * this.view.camera.scale + 6);
+      this.words("our car", px - 20, py + below, this.colours.ego, this.colours.egoEdge);
+    }
+    const worst = estimate && run.carAt(estimate.worst, time);
+    if (worst && estimate?.worst) {
+      this.ring(worst);
+      this.tag(worst, `${estimate.worst}: limits Safe to ${estimate.safe.toFixed(2)}`, this.colours.risk, this.colours.paper);
+    }
+    for (const judged of run.doc.judged) {
+      const where = Math.abs(judged.time - time) < SHOWN_FOR ? run.carAt(judged.vehicle, time) ?? ego : null;
+      if (where) {
+        this.ring(where);
+        this.tag(where, `${judged.kind.replace("_", " ")} (blame: ${judged.blame})`, this.colours.risk, this.colours.paper);
+      }
+    }
+    this.scaleBar();
+  }
+
+  private ends(paths: [number, number][][], ego: Pose | null): void {
+    const first = this.view.run.doc.plans.find((plan) => plan.steps.length);
+    if (!first) return;
+    const start = paths[first.steps[0]]?.[0];
+    const last = paths[first.steps[first.steps.length - 1]];
+    const left = start && !(ego && Math.hypot(ego.x - start[0], ego.y - start[1]) < 20);
+    if (left) this.flag(start, "start");
+    if (last?.length) this.flag(last[last.length - 1], "goal");
+  }
+
+  private flag([x, y]: [number, number], text: string): void {
+    const { ctx, colours } = this;
+    const [px, py] = this.view.camera.screen(x, y);
+    ctx.fillStyle = colours.ink;
+    ctx.strokeStyle = colours.paper;
+    ctx.beginPath();
+    ctx.arc(px, py, 5, 0, 2 * Math.PI);
+    ctx.fill();
+    ctx.stroke();
+    this.words(text, px + 9, py + 4, colours.ink, colours.paper);
+  }
+
+  private disc([px, py]: [number, number], name: string, colour: string): void {
+    const { ctx } = this;
+    ctx.fillStyle = colour;
+    ctx.strokeStyle = "#fff";
+    ctx.beginPath();
+    ctx.arc(px, py, 10, 0, 2 * Math.PI);
+    ctx.fill();
+    ctx.stroke();
+    ctx.font = "700 12px system-ui, sans-serif";
+    ctx.fillStyle = "#fff";
+    ctx.fillText(name, px - ctx.measureText(name).width / 2, py + 4);
+  }
+
+  private ring(where: Pose): void {
+    const [px, py] = this.view.camera.screen(where.x, where.y);
+    this.ctx.strokeStyle = this.colours.risk;
+    this.ctx.beginPath();
+    this.ctx.arc(px, py, Math.max(12, 4 * this.view.camera.scale), 0, 2 * Math.PI);
+    this.ctx.stroke();
+  }
+
+  private tag(where: Pose, text: string, ink: string, paper: string): void {
+    const [px, py] = this.view.camera.screen(where.x, where.y);
+    const above = Math.max(14, 3 * this.view.camera.scale);
+    this.words(text, px + above * 0.7, py - above, ink, paper);
+  }
+
+  private words(text: string, px: number, py: number, ink: string, paper: string): void {
+    const { ctx } = this;
+    ctx.font = "600 12px system-ui, sans-serif";
+    ctx.strokeStyle = paper;
+    ctx.lineWidth = 4;
+    ctx.lineJoin = "round";
+    ctx.strokeText(text, px, py);
+    ctx.lineWidth = 2;
+    ctx.fillStyle = ink;
+    ctx.fillText(text, px, py);
+  }
+
+  private scaleBar(): void {
+    const { ctx, colours } = this;
+    const { scale, height } = this.view.camera;
+    const length = [5, 10, 20, 50, 100, 200, 500, 1000].find((metres) => metres * scale > 60) ?? 2000;
+    ctx.fillStyle = colours.ink;
+    ctx.fillRect(14, height - 16, length * scale, 3);
+    this.words(`${length} m`, 14, height - 22, colours.ink, colours.land);
+  }
+}

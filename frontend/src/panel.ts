@@ -1,0 +1,90 @@
+/** The side panel: what happened, why a plan was changed, the plan in force, and how the run is repeated. */
+
+import { badge, el, metres } from "./elements";
+import { why } from "./explanation";
+import { planColour } from "./palette";
+import { keys, legend, planInForce, repeat } from "./plan";
+import type { View } from "./view";
+
+const ENDINGS = new Map([
+  ["SUCCESS", "and arrived"],
+  ["COLLISION", "and collided"],
+  ["STOPPED_BLOCKED", "and then stood too long"],
+  ["NO_PLAN", "and then had no plan left"],
+  ["TIME_LIMIT", "and ran out of time"],
+]);
+
+export function panel(view: View): HTMLElement[] {
+  const { doc } = view.run;
+  const missing = doc.missing.map((text) => el("li", {}, text));
+  return [
+    summary(view),
+    missing.length ? el("section", { id: "missing" }, el("h2", {}, "Not shown"), el("ul", {}, ...missing)) : null,
+    changes(view),
+    unsafe(view),
+    planInForce(view),
+    legend(),
+    keys(),
+    repeat(view),
+  ].filter((part) => part !== null);
+}
+
+function summary({ run }: View): HTMLElement {
+  const { mission, finished, changes, judged } = run.doc;
+  const times = changes.length === 1 ? "once" : changes.length === 2 ? "twice" : `${changes.length} times`;
+  const drive = finished
+    ? `The car drove ${metres(finished.distance)} in ${run.clock(finished.time)} ${ENDINGS.get(finished.status) ?? `(${finished.status})`}.`
+    : "The record has no end.";
+  const safety = judged.length ? `Unsafe moments judged: ${judged.length}.` : "Nothing unsafe was judged.";
+  const said = changes.length ? `It changed its plan ${times}.` : "It kept its first plan.";
+  const words = [drive, finished?.message ? `${finished.message}.` : "", said, safety].join(" ");
+  const via = Array.isArray(mission.via) ? mission.via.map(String) : [];
+  const route = [mission.start, ...via, mission.goal].map(String).join(" → ");
+  return el("section", { id: "summary" }, el("h1", {}, route), el("p", {}, words));
+}
+
+function changes(view: View): HTMLElement {
+  const { run } = view;
+  const list = el("ol", { class: "changes" });
+  run.doc.changes.forEach((change, number) => {
+    const [before, plan] = [run.doc.plans[change.plan - 1], run.doc.plans[change.plan]];
+    const head = el(
+      "button",
+      { type: "button", class: "change", "aria-expanded": "false", onclick: () => view.explain(number) },
+      el("span", { class: "when" }, run.clock(plan.time)),
+      badge(before.name, planColour(change.plan - 1)),
+      "→",
+      badge(plan.name, planColour(change.plan)),
+      el("span", { class: "headline" }, change.headline),
+    );
+    const body = el("div", { class: "why", hidden: true });
+    list.append(el("li", {}, head, body));
+    view.onChange(() => {
+      const open = view.change === number;
+      head.setAttribute("aria-expanded", String(open));
+      if (open && !body.childElementCount) body.append(...why(view, change));
+      if (open === body.hidden) {
+        body.hidden = !open;
+        if (open) head.scrollIntoView({ block: "nearest" });
+      }
+    });
+  });
+  const none = run.doc.changes.length ? null : el("p", {}, "The first plan was driven to its end.");
+  return el("section", { id: "changes" }, el("h2", {}, "Why the plan changed"), none, list);
+}
+
+function unsafe(view: View): HTMLElement | null {
+  const { judged } = view.run.doc;
+  if (!judged.length) return null;
+  const rows = judged.map((event) => {
+    const who = [event.kind.replace("_", " "), event.vehicle ?? "", `(blame: ${event.blame}, ${event.rule})`].join(" ");
+    const open = () => view.goTo(event.time);
+    return el(
+      "li",
+      {},
+      el("button", { type: "button", class: "change", onclick: open }, el("span", { class: "when" }, view.run.clock(event.time)), who),
+      el("p", { class: "detail" }, event.detail),
+    );
+  });
+  return el("section", { id: "unsafe" }, el("h2", {}, "Unsafe moments"), el("ol", { class: "changes" }, ...rows));
+}

@@ -1,0 +1,120 @@
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Page
+
+from tests.viewer.browsing import clock, opened
+from tests.viewer.hostile import NAMES
+from tests.viewer.made_runs import decision, frame, header, recorded
+from tmpud.viewer.replay import write_replay
+
+MOVING = "() => frameTimes.length > 0"
+
+
+def picture(page: Page) -> bytes:
+    """Return the scene as it is drawn now."""
+    page.evaluate("() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
+    return page.locator("#scene").screenshot()
+
+
+@pytest.fixture(scope="module")
+def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("replay")
+    write_replay(recorded(folder / "run"), folder / "replay.html")
+    return folder / "replay.html"
+
+
+@pytest.fixture
+def page(file: Path) -> Iterator[Page]:
+    with opened(file) as page:
+        yield page
+
+
+def test_it_plays_to_the_end_and_tells_how_long_each_picture_took(page: Page) -> None:
+    before = picture(page)
+    page.keyboard.press(" ")
+    page.wait_for_function(MOVING)
+    page.wait_for_function("() => document.querySelector('#play').textContent === '▶'")
+    assert clock(page) == 4.0
+    assert picture(page) != before
+    assert "SUCCESS" in page.inner_text("#moment")
+
+
+def test_keys_step_and_the_strip_scrubs(page: Page) -> None:
+    page.keyboard.press("ArrowRight")
+    page.keyboard.press("Shift+ArrowRight")
+    assert clock(page) == 1.1
+    page.locator(".scrub").fill("2500")
+    assert clock(page) == 2.5
+    page.keyboard.press("Home")
+    assert clock(page) == 0.0
+
+
+def test_a_click_on_a_change_explains_it_and_shows_the_plans_to_choose_from(page: Page) -> None:
+    page.click(".flag.replan")
+    why = page.inner_text(".why")
+    assert "Plan A was to merge left now" in why
+    assert "It would have kept plan A if" in why
+    assert page.locator(".why tbody tr").count() == 2
+    assert page.inner_text(".why tr.chosen").startswith("B")
+    before = picture(page)
+    page.hover(".why tr.given-up")
+    assert picture(page) != before
+
+
+def test_an_unsafe_moment_opens_a_second_before(page: Page) -> None:
+    page.click(".flag.unsafe")
+    assert clock(page) == 2.0
+    assert "forced stop car2 (blame: ego, merge)" in page.inner_text("#unsafe")
+
+
+def test_the_plan_moves_on_with_the_drive(page: Page) -> None:
+    assert page.inner_text("#plan tr.now").split("\t")[1] == "↑ straight on"
+    assert page.locator("#plan tr.done").count() == 0
+    page.keyboard.press("End")
+    assert page.locator("#plan tr.done").count() == 1
+    assert "merge left" in page.inner_text("#plan")
+
+
+def test_the_view_can_be_moved_zoomed_and_brought_back(page: Page) -> None:
+    seen = [picture(page)]
+    for key in ("f", "+", "w"):
+        page.keyboard.press(key)
+        seen.append(picture(page))
+    page.mouse.move(400, 300)
+    page.mouse.down()
+    page.mouse.move(500, 350)
+    page.mouse.up()
+    seen.append(picture(page))
+    page.mouse.wheel(0, -400)
+    seen.append(picture(page))
+    page.click("[aria-label='Light or dark']")
+    seen.append(picture(page))
+    assert len(set(seen)) == len(seen)
+
+
+def test_it_fits_a_telephone(file: Path) -> None:
+    with opened(file, width=390, height=844) as page:
+        assert page.evaluate("document.documentElement.scrollWidth") <= 390
+        page.click(".flag.replan")
+        assert page.locator(".why").is_visible()
+
+
+def test_hostile_names_are_shown_and_do_nothing(tmp_path: Path) -> None:
+    names = [name.encode(errors="replace").decode() for name in NAMES]
+    log = [
+        header(start=names[0], goal=names[1]),
+        *decision(names[2]),
+        *(frame(number, names, {name: name for name in names}) for number in range(5)),
+    ]
+    write_replay(recorded(tmp_path / "run", log), tmp_path / "replay.html")
+    with opened(tmp_path / "replay.html") as page:
+        page.click(".flag.replan")
+        page.keyboard.press(" ")
+        page.wait_for_function(MOVING)
+        assert names[0] in page.inner_text("h1")
+        assert names[2] in page.inner_text(".why")
+        assert page.evaluate("window.struck") is None
+        assert page.locator("iframe, img, object, embed, form, base, link, a").count() == 0
+        assert "no end" in page.inner_text("#missing")
