@@ -55,7 +55,7 @@ def _generated(folder: Path, blocks: int, seed: int) -> Path:
     program = Path(sys.executable).with_name("netgenerate")
     size = ["--grid", "--grid.number", str(blocks), "--grid.length", "100", "--default.lanenumber", "2"]
     moved = ["--perturb-x", "norm(0,10)", "--perturb-y", "norm(0,10)", "--seed", str(seed), "--no-turnarounds"]
-    subprocess.run([program, *size, *moved, "-o", net], check=True, capture_output=True)  # noqa: S603
+    subprocess.run([program, *size, *moved, "-o", net], check=True, capture_output=True)
     return net
 
 
