@@ -12,6 +12,6 @@ def test_clingo_dijkstra_and_enumeration_agree_on_random_road_graphs() -> None:
 
 
 @given(st.integers(min_value=0))
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 def test_they_agree_on_whatever_graph_hypothesis_thinks_of(seed: int) -> None:
     assert compare(1, seed).mismatches == []
