@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from tests.viewer.made_runs import events, recorded
+from tests.viewer.made_runs import events, frame, recorded
 from tmpud.errors import RunFileError
 from tmpud.events import Frame, to_json
 from tmpud.recording import LOG
@@ -51,6 +51,12 @@ def test_damaged_lines_are_left_out_and_named(tmp_path: Path) -> None:
     run = read_intact(tmp_path)
     assert run.missing == ["damaged in the log and left out: line 3, line 11, line 21"]
     assert 1 + len(run.events) + len(run.frames) + 3 == len(lines)
+
+
+def test_a_frame_out_of_order_is_left_out_and_named(tmp_path: Path) -> None:
+    run = read_intact(recorded(tmp_path / "run", [*events(), frame(3)]))
+    assert run.frames == [event for event in events() if isinstance(event, Frame)]
+    assert "the frame of 10.4 s, which is out of order" in run.missing[0]
 
 
 def write_lines(folder: Path, lines: list[str]) -> None:

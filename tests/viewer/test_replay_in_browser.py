@@ -7,6 +7,7 @@ from playwright.sync_api import Page
 from tests.viewer.browsing import clock, opened
 from tests.viewer.hostile import NAMES
 from tests.viewer.made_runs import decision, frame, header, recorded
+from tmpud.events import Event
 from tmpud.viewer.replay import write_replay
 
 MOVING = "() => frameTimes.length > 0"
@@ -118,3 +119,15 @@ def test_hostile_names_are_shown_and_do_nothing(tmp_path: Path) -> None:
         assert page.evaluate("window.struck") is None
         assert page.locator("iframe, img, object, embed, form, base, link, a").count() == 0
         assert "no end" in page.inner_text("#missing")
+
+
+def test_a_run_of_which_little_is_left_opens_all_the_same(tmp_path: Path) -> None:
+    logs: dict[str, list[Event]] = {"header": [header()], "plans": [header(map="atlantis"), *decision()]}
+    for name, log in logs.items():
+        write_replay(recorded(tmp_path / name, log), tmp_path / f"{name}.html")
+        with opened(tmp_path / f"{name}.html") as page:
+            page.keyboard.press(" ")
+            page.keyboard.press("n")
+            page.keyboard.press("f")
+            assert "no frames were recorded" in page.inner_text("#missing")
+            assert page.locator(".why tbody tr").count() == (2 if name == "plans" else 0)

@@ -38,7 +38,9 @@ def read_intact(folder: Path) -> Intact:
     run = Intact(header)
     for event in lines:
         if isinstance(event, Frame):
-            if not run.frames or event.time > run.frames[-1].time:
+            if run.frames and event.time <= run.frames[-1].time:
+                damaged.append(f"the frame of {event.time} s, which is out of order")
+            else:
                 run.frames.append(event)
         elif not isinstance(event, Header):
             run.events.append(event)
