@@ -289,7 +289,7 @@ def test_the_version_is_the_packages(tmpud: Tmpud) -> None:
 @pytest.mark.parametrize(
     ("command", "others"),
     [
-        (("plan",), ["--json"]),
+        (("plan",), ["--rules", "--verbose", "--json"]),
         (("asp", "dump"), ["--out"]),
         (("drive",), ["--algorithm", "--beta", "--traffic", "--out", "--frames", "--json"]),
     ],
