@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from functools import cache
 from importlib.resources import files
 
@@ -15,7 +15,6 @@ ENCODING = DOMAIN + PLANNING
 PLACES = ("places.lp",)
 
 Weights = Mapping[Transition, int]  # [cm]
-Quality = tuple[int, int, int]  # centimetres, merges, actions
 
 
 def encodings() -> tuple[tuple[str, str], ...]:
@@ -36,19 +35,16 @@ def facts(domain: Domain, state: State, weights: Weights) -> str:
     return "\n".join((*lines, *_goals(domain), *weighed, *_ends(domain, state), ""))
 
 
-def steps(domain: Domain, state: State, qualities: Mapping[Transition, Quality]) -> str:
-    """Return the instance of the encoding less ``driving.lp``: what that derives, here with any qualities."""
-    can = (
-        f"can({spelled(step)},{step.next_state.leg},({centimetres},{merges},{actions}))."
-        for step, (centimetres, merges, actions) in qualities.items()
-    )
+def steps(domain: Domain, state: State, weights: Weights) -> str:
+    """Return the instance of the encoding less ``driving.lp``: what that derives from the facts for these weights."""
+    can = (f"can({spelled(step)},{step.next_state.leg},{weight})." for step, weight in weights.items())
     return "\n".join((*can, *_ends(domain, state), ""))
 
 
-def places(domain: Domain, state: State, steps: Iterable[Transition]) -> str:
+def places(domain: Domain, state: State, weights: Weights) -> str:
     """Return what rules may ask for beyond the instance of ``steps``: the goals, and on which lane a segment lies."""
-    segments = dict.fromkeys(end.segment for step in steps for end in (step.state, step.next_state))
-    segments[state.segment] = None
+    segments = dict.fromkeys([state.segment, *(step.next_state.segment for step in weights)])
+    segments.update(dict.fromkeys(step.state.segment for step in weights))
     lanes = ((segment, domain.network.lanes[domain.network.segments[segment].lane]) for segment in segments)
     rows = (f"lane({quote(segment)},{quote(lane.id)},{quote(lane.edge)})." for segment, lane in lanes)
     return "\n".join((*_goals(domain), *rows, ""))

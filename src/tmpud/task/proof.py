@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from tmpud.symbols import State, Transition
 from tmpud.task.corridor import Corridor, Search, corridor, whole_map
 from tmpud.task.domain import Domain
-from tmpud.task.facts import PLACES, PLANNING, Quality, encoding, facts, places, steps
+from tmpud.task.facts import PLACES, PLANNING, encoding, facts, places, steps
 from tmpud.task.solver import ask, ask_one
 from tmpud.task.ties import preferred
 from tmpud.task.utility import check_total, most, split
@@ -73,11 +73,12 @@ class Prover:
         return _summed([*rounds, self._on_the_map(domain, search, state)])
 
     def _in_corridor(self, domain: Domain, state: State, given: Corridor) -> Proof:
-        return self._ask(encoding(PLANNING) + steps(domain, state, reduced(given)), domain, state, given)
+        weights = shifted(given)
+        return self._ask(encoding(PLANNING) + steps(domain, state, weights), domain, state, given)
 
     def _on_the_map(self, domain: Domain, search: Search, state: State) -> Proof:
         given = whole_map(search, state)
-        weights = {step: split(rank)[0] for step, rank in given.ranks.items()}
+        weights = shifted(given)
         return self._ask(encoding() + facts(domain, state, weights), domain, state, given)
 
     def _ask(self, program: str, domain: Domain, state: State, given: Corridor) -> Proof:
@@ -91,18 +92,16 @@ class Prover:
         return Proof(answer.union, total, answer.optimal, len(given.ranks), 1, answer.ground_s, answer.solve_s)
 
 
-def reduced(given: Corridor) -> dict[Transition, Quality]:
-    """Return the qualities less what each transition gains in distance from the start: every plan's shrink by the same.
+def shifted(given: Corridor) -> dict[Transition, int]:
+    """Return each weight with the distances from the start taken out [cm]: every plan's total shrinks by the optimum.
 
-    What lies on a best plan is left with (0, 0, 0), so that the solver starts where it has to end.
+    The best plans then total 0, where the solver starts.
     """
-    gained = {state: split(rank) for state, rank in given.distance.items()}
-    found: dict[Transition, Quality] = {}
-    for step, rank in given.ranks.items():
-        centimetres, merges, actions = split(rank)
-        here, there = gained[step.state], gained[step.next_state]
-        found[step] = centimetres + here[0] - there[0], merges + here[1] - there[1], actions + here[2] - there[2]
-    return found
+    centimetres = {state: split(rank)[0] for state, rank in given.distance.items()}
+    return {
+        step: split(rank)[0] + centimetres[step.state] - centimetres[step.next_state]
+        for step, rank in given.ranks.items()
+    }
 
 
 def _summed(rounds: Sequence[Proof]) -> Proof:
