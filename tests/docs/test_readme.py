@@ -14,7 +14,7 @@ README = (Path(__file__).resolve().parents[2] / "README.md").read_text()
 BIN = Path(sys.executable).parent
 COMMANDS = re.findall(r"^\.venv/bin/(tmpud .*)$", README, re.MULTILINE)
 LONG = [
-    command for command in COMMANDS if command.split()[1] in ("paper", "learn-world", "results")
+    command for command in COMMANDS if command.split()[1] in ("paper", "learn-world", "results", "replay")
 ]  # or need a result
 
 
@@ -31,7 +31,9 @@ def test_a_command_runs(command: str, tmp_path: Path) -> None:
 def test_an_experiment_has_the_options_it_is_told_with(command: str) -> None:
     words = shlex.split(command, comments=True)
     names = [
-        word for word in words[1:3] if word in ("paper", "table1", "figure4", "calibration", "learn-world", "results")
+        word
+        for word in words[1:3]
+        if word in ("paper", "table1", "figure4", "calibration", "learn-world", "results", "replay")
     ]
     told = subprocess.run([BIN / "tmpud", *names, "--help"], capture_output=True, text=True, check=True).stdout
     assert all(word in told for word in words if word.startswith("--"))
