@@ -50,7 +50,8 @@ def interrupt(plan: Plan) -> Found:
         code = campaign.wait()
         found.orphans = campaign.left_over()
         found.seconds = time.monotonic() - began
-        if code != (INTERRUPTED if found.struck else 0):
+        outside = -plan["signal"]  # it came while Python itself started or ended: nothing of ours ran
+        if code not in ((INTERRUPTED, outside) if found.struck else (0,)):
             found.notes.append(f"exit code {code}: {campaign.said()[-300:]}")
         compare_midway(found, folder, campaign.given, expected)
         _resume(folder, plan, found)
