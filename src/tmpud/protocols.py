@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Sequence
+from collections.abc import Generator, Mapping, Sequence
 from typing import TYPE_CHECKING, Protocol
 
 from tmpud.presets import Preset
@@ -109,6 +109,11 @@ class Judge(Protocol):
 
     def observe(self, scene: Scene) -> tuple[Verdict, ...]:
         """Return what is to be said of this instant."""
+        ...
+
+    @property
+    def metrics(self) -> Mapping[str, float]:
+        """What the drive is measured by, so far."""
         ...
 
 

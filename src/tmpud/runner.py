@@ -60,6 +60,7 @@ class Mission:
 
 
 SimulatorFactory = Callable[[RoadNetwork, Mission], Simulator]
+WorldFactory = Callable[..., SimulatedWorld]
 EstimatorFactory = Callable[[Preset, LaneMotionPlanner, RoadNetwork], SafetyEstimator]
 
 
@@ -79,12 +80,14 @@ def drive(
     alternatives: int = ALTERNATIVES,
     communicate: Communicate | None = None,
     estimator: EstimatorFactory = SafeSetEstimator,
+    world: WorldFactory = SimulatedWorld,
 ) -> Iterator[Event]:
     """Run one mission and yield its events, from Header to Finished.
 
     ``communicate`` takes the place of what the mission's algorithm does in lines 5 to 7 of Algorithm 2. The same
     mission gives the same events; ``frames`` and ``alternatives``, how many other plans are listed beside each one,
-    are for people to look at. Raises MapError, RequestError or SimulatorError for what cannot be run.
+    are for people to look at; ``world`` stands in for SimulatedWorld. Raises MapError, RequestError or SimulatorError
+    for what cannot be run.
     """
     preset = preset_named(mission.preset)
     communicate = communicate or communication(mission.algorithm, mission.beta)
@@ -97,21 +100,19 @@ def drive(
     safety = estimator(preset, motion, network)
     planner.solve = watch.timed("plan", planner.solve)  # type: ignore[method-assign]
     safety.estimate = watch.timed("estimate", safety.estimate)  # type: ignore[method-assign]
-    judge = Judge(network)
-    town = simulator(network, mission)
+    town, judge, rng = simulator(network, mission), Judge(network), np.random.default_rng(mission.seed)
+    here = world(network, town, mapping, motion, safety, judge, rng, frames=frames)
     try:
-        rng = np.random.default_rng(mission.seed)
-        world = SimulatedWorld(network, town, mapping, motion, safety, judge, rng, frames=frames)
         domain = Domain(network, request)
         start = domain.start_state()
-        world.enter(*mapping(start))
+        here.enter(*mapping(start))
         yield _header(mission, preset, network, request)
-        mind = Deliberation(request, domain, planner, motion, world, alternatives=alternatives)
-        status, message = yield from _ended(run_tmpud(start, mind, communicate), world)
+        mind = Deliberation(request, domain, planner, motion, here, alternatives=alternatives)
+        status, message = yield from _ended(run_tmpud(start, mind, communicate), here)
     finally:
-        town.close()
-    travelled = world.time - world.began
-    yield Finished(world.time, status, message, world.distance, travelled, mind.replans, judge.metrics)
+        here.leave()
+    travelled = here.time - here.began
+    yield Finished(here.time, status, message, here.distance, travelled, mind.replans, here.metrics)
 
 
 def _ended(run: Generator[Event, None, Outcome], world: SimulatedWorld) -> Generator[Event, None, tuple[str, str]]:

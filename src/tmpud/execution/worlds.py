@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Generator
+from collections.abc import Generator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -65,6 +65,10 @@ class SimulatedWorld:
         if any(verdict.kind == "collision" for verdict in self._judge.observe(self.scene)):
             raise SimulatorError(f"there is no room for the ego on {lane} at {station:.1f} m")
 
+    def leave(self) -> None:
+        """End the simulation."""
+        self._simulator.close()
+
     @property
     def time(self) -> float:
         return self.scene.time
@@ -83,6 +87,11 @@ class SimulatedWorld:
     def refused(self) -> str | None:
         """The first command that the independent brake refused, None while it has refused none."""
         return self._guard.refused
+
+    @property
+    def metrics(self) -> Mapping[str, float]:
+        """What the judge has measured the drive by, so far."""
+        return self._judge.metrics
 
     def estimate(self, step: Transition) -> SafetyEstimate:
         """Return Algorithm 1's estimate for the present snapshot; asked twice, it is the same one."""

@@ -12,6 +12,7 @@ from tmpud.motion.path import Cross, Follow, Move
 from tmpud.motion.path_planner import PathPlanner
 from tmpud.motion.right_of_way import RightOfWay
 from tmpud.motion.route import Route, build_route
+from tmpud.motion.signals import Switched
 from tmpud.roads.network import RoadNetwork
 from tmpud.scene import Control, FloatArray, Scene
 from tmpud.symbols import TaskPlan, Transition
@@ -31,6 +32,15 @@ class LaneMotionPlanner(PathPlanner):
         self._limits, self._dt = limits, dt
         self._right_of_way = RightOfWay(network)
         self._drive: Drive | None = None
+
+    @property
+    def lights(self) -> Switched:
+        """All that this planner remembers of the scenes it was shown: how long each light has been as it is."""
+        return self._right_of_way.clock.switched
+
+    @lights.setter
+    def lights(self, switched: Switched) -> None:
+        self._right_of_way.clock.switched = switched
 
     def where(self, scene: Scene, transition: Transition) -> RoadPoint:
         """Return the point of the transition's first lane beside which the ego is."""

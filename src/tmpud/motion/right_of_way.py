@@ -35,11 +35,11 @@ class Shared(NamedTuple):
 
 
 class RightOfWay:
-    """Decides, for one stop line at a time, whether the ego may cross it now."""
+    """Decides, for one stop line at a time, whether the ego may cross it now; what it remembers is its clock."""
 
     def __init__(self, network: RoadNetwork) -> None:
         self._network = network
-        self._clock = SignalClock(network)
+        self.clock = SignalClock(network)
         self._shared: dict[tuple[int, int], Shared | None] = {}
         self._junctions: dict[str, list[int]] = defaultdict(list)
 
@@ -68,12 +68,12 @@ class RightOfWay:
         """Whether the ego would be out of the junction before crossing traffic gets green, or is too near to stop."""
         way = distance + connection.path.length + scene.ego.length
         time = _time_to_cover(way, scene.ego.speed)
-        left = self._clock.until_crossing_green(connection, scene.time)
+        left = self.clock.until_crossing_green(connection, scene.time)
         return time < left or not _can_stop(scene.ego.speed, distance)
 
     def observe(self, scene: Scene) -> None:
         """Watch the lights; to be called at every step."""
-        self._clock.observe(scene)
+        self.clock.observe(scene)
 
     def room_inside(self, scene: Scene, index: int, front: float) -> float:
         """Return how far the ego, within connection ``index``, may go on before a place that another takes first [m].

@@ -9,6 +9,7 @@ from tmpud.roads.network import LaneConnection, RoadNetwork
 from tmpud.scene import Scene
 
 GREEN = "Gg"
+Switched = Mapping[str, tuple[str, float]]  # light -> its letters and since when it shows them [s]
 
 
 class SignalClock:
@@ -16,7 +17,7 @@ class SignalClock:
 
     def __init__(self, network: RoadNetwork) -> None:
         self._network = network
-        self._switched: dict[str, tuple[str, float]] = {}  # light -> its letters and since when it shows them [s]
+        self.switched: Switched = {}  # never changed, but replaced
         self._seen: Mapping[str, str] | None = None  # the signals of the last scene
 
     def observe(self, scene: Scene) -> None:
@@ -24,13 +25,15 @@ class SignalClock:
         if scene.signals is self._seen:
             return
         self._seen = scene.signals
+        switched = dict(self.switched)
         for light, letters in scene.signals.items():
             if light not in self._network.signals:
                 continue  # nothing is known of its program
-            if light not in self._switched:
-                self._switched[light] = letters, self._began(light, letters, scene.time)
-            elif self._switched[light][0] != letters:
-                self._switched[light] = letters, scene.time
+            if light not in switched:
+                switched[light] = letters, self._began(light, letters, scene.time)
+            elif switched[light][0] != letters:
+                switched[light] = letters, scene.time
+        self.switched = switched
 
     def _began(self, light: str, letters: str, now: float) -> float:
         """Return since when a light that is seen for the first time shows its letters, if it keeps to its program."""
@@ -48,9 +51,9 @@ class SignalClock:
         It is inf where the light's program does not say so, or shows letters that the program does not have.
         """
         light = connection.signal
-        if light is None or light not in self._switched:
+        if light is None or light not in self.switched:
             return math.inf
-        letters, since = self._switched[light]
+        letters, since = self.switched[light]
         phases = self._network.signals[light].phases
         current = next((i for i, phase in enumerate(phases) if phase[1] == letters), None)
         if current is None:

@@ -99,6 +99,15 @@ def test_a_group_is_prepared_once_and_each_of_its_tasks_has_a_process(tmp_path: 
     assert len({record.result["run_in"] for record in records}) == 4
 
 
+def test_a_task_has_the_notes_of_those_before_it_that_start_from_the_same(tmp_path: Path) -> None:
+    todo = [task(f"{n}", work="Noting", shared=n // 4, seed=n, how="crash" * (n == 1)) for n in range(5)]
+    records = finish(tmp_path / "together", todo)
+    assert records.pop("1").status == SIM_CRASH
+    assert [record.result["before"] for _, record in sorted(records.items())] == [[], ["0"], ["0", "2"], []]
+    alone = finish(tmp_path / "alone", todo[2:], recycle_after=1)
+    assert [record.result["before"] for record in alone.values()] == [[], [], []]
+
+
 def test_a_worker_is_replaced_after_its_share_of_tasks(tmp_path: Path) -> None:
     records = finish(tmp_path, [task(str(n), work="Where") for n in range(6)], jobs=1, recycle_after=2).values()
     assert set(Counter(record.result["run_in"] for record in records).values()) == {2}

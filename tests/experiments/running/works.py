@@ -73,6 +73,22 @@ class WhereIsolated(Where):
     isolated = True
 
 
+class Noting(Isolated):
+    """Says which tasks left a note before it, and leaves one itself, be it that it crashes then."""
+
+    def prepare(self, shared: Json) -> dict[str, int]:  # type: ignore[override]  # noqa: ARG002
+        return {}
+
+    def run(self, prepared: dict[str, int], arguments: Json) -> Json:  # type: ignore[override]
+        before = list(prepared)
+        prepared[str(arguments["seed"])] = 1
+        misbehave(_how(arguments))
+        return {"before": before}
+
+    def notes(self, prepared: dict[str, int]) -> dict[str, int]:
+        return prepared
+
+
 class Threaded(Isolated):
     """Leaves a thread running, which a copy of the process would not have."""
 

@@ -1,4 +1,4 @@
-"""Full trials of which one's process is killed in the middle of the drive."""
+"""Full trials: one that is killed in the middle of its drive, and some that need no drive of their own."""
 
 from __future__ import annotations
 
@@ -39,18 +39,18 @@ class Killed(FullTrials):
         town.simulator.step = last  # type: ignore[method-assign]
 
 
-def campaign(folder: Path, flag: Path) -> list[Record]:
-    mission = {"map": "millbrook", "start": PAPER.start, "goal": PAPER.goal, "traffic": 8, "seed": 3}
+def campaign(folder: Path, flag: Path, limits: Limits | None = None) -> list[Record]:
+    mission = {"map": "millbrook", "start": PAPER.start, "goal": PAPER.goal, "traffic": 30, "seed": 3}
     tasks = [
         Task(
             key=algorithm,
             work="tests.experiments.trials.test_broken:Killed",
             shared=mission,
-            arguments={"algorithm": algorithm, "kill": str(flag) if algorithm == "threshold" else ""},
+            arguments={"algorithm": algorithm, "kill": str(flag) if algorithm == "no-com" else ""},
         )
         for algorithm in ("no-com", "threshold", "tmpud")
     ]
-    return list(run_campaign(folder, Experiment(name="broken", options={}), tasks, limits=Limits(jobs=1)))
+    return list(run_campaign(folder, Experiment(name="broken", options={}), tasks, limits=limits or Limits(jobs=1)))
 
 
 def statuses(records: Iterable[Record]) -> dict[str, str]:
@@ -61,7 +61,13 @@ def test_a_killed_simulation_costs_its_own_trial_which_the_next_run_makes_up(tmp
     flag = tmp_path / "kill"
     unbroken = campaign(tmp_path / "unbroken", flag)
     flag.touch()
-    assert statuses(campaign(tmp_path / "broken", flag)) == {"no-com": DONE, "threshold": SIM_CRASH, "tmpud": DONE}
+    assert statuses(campaign(tmp_path / "broken", flag)) == {"no-com": SIM_CRASH, "threshold": DONE, "tmpud": DONE}
     flag.unlink()
     assert results_hash(campaign(tmp_path / "broken", flag)) == results_hash(unbroken)
     assert set(statuses(unbroken).values()) == {DONE}
+
+
+def test_trials_that_know_of_each_other_end_like_those_that_do_not(tmp_path: Path) -> None:
+    together = campaign(tmp_path / "together", tmp_path / "kill")
+    alone = campaign(tmp_path / "alone", tmp_path / "kill", Limits(jobs=2, recycle_after=1))
+    assert results_hash(together) == results_hash(alone)

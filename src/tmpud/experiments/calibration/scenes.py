@@ -78,7 +78,7 @@ class MergeScenes(FullTrials):
 
     def run(self, prepared: Town, arguments: Json) -> Json:
         """Drive the town's mission; the rows are as ``merge_rows`` says."""
-        mission, town = prepared
+        mission, town, _ = prepared
         panels: list[MergePanel] = []
 
         def panel(_: Any, motion: Any, network: Any) -> MergePanel:

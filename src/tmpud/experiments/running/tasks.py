@@ -6,7 +6,7 @@ import hashlib
 import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 from tmpud.errors import RequestError
 
@@ -56,6 +56,15 @@ class Work(Protocol):
 
     def run(self, prepared: Any, arguments: Json) -> Json:
         """Do one task; what it raises is a tool fault, and a SimulatorError a crash: it is tried once more."""
+        ...
+
+
+@runtime_checkable
+class NotingWork(Work, Protocol):
+    """Isolated work whose tasks leave notes for those after them, to spare them time but to change no result."""
+
+    def notes(self, prepared: Any) -> dict[Any, Any]:
+        """Return the notes, to which ``run`` adds; what it adds in its copy of what was prepared is carried over."""
         ...
 
 

@@ -11,6 +11,7 @@ import gc
 import importlib
 import json
 import os
+import pickle
 import re
 import resource
 import signal
@@ -24,7 +25,7 @@ from typing import Any
 
 from tmpud.errors import SimulatorError
 from tmpud.experiments.running.processes import die_with, ending, exit_code, fork, threads
-from tmpud.experiments.running.tasks import DONE, ERROR, SIM_CRASH, Json, Work, located
+from tmpud.experiments.running.tasks import DONE, ERROR, SIM_CRASH, Json, NotingWork, Work, located
 
 ADDRESS = re.compile(r"0x[0-9a-f]+")  # of an object: another in each process
 Send = Callable[[Json], None]
@@ -113,27 +114,31 @@ def _here(work: Work, prepared: Any, arguments: Json) -> Json:
 
 
 def _in_child(connection: int, work: Work, prepared: Any, arguments: Json) -> Json:
-    """Run one task in a copy of this process, so that nothing it does can touch the next."""
+    """Run one task in a copy of this process, so that nothing it does can touch the next but by its notes."""
     reading, writing = os.pipe()
 
     def run() -> None:
         os.close(connection)
         with os.fdopen(writing, "wb") as pipe:
-            pipe.write(json.dumps(_here(work, prepared, arguments)).encode())
+            pipe.write(json.dumps(_here(work, prepared, arguments)).encode() + b"\n")
+            if isinstance(work, NotingWork):
+                pickle.dump(work.notes(prepared), pipe)
 
     child = fork(run)
     os.close(writing)
     with os.fdopen(reading, "rb") as pipe:
-        data = pipe.read()
+        data, _, notes = pipe.read().partition(b"\n")
     code = exit_code(child)
     try:
         answer = json.loads(data)
         whole = not code and {"status", "result"} == set(answer)
     except (ValueError, TypeError, RecursionError):
         whole = False
-    if whole:
-        return dict(answer)
-    return {"status": SIM_CRASH, "result": {"message": ending(code) if code else "garbage instead of a result"}}
+    if not whole:
+        return {"status": SIM_CRASH, "result": {"message": ending(code) if code else "garbage instead of a result"}}
+    if isinstance(work, NotingWork):
+        work.notes(prepared).update(pickle.loads(notes))  # noqa: S301  our own copy wrote them
+    return dict(answer)
 
 
 def _send(connection: socket.socket, answer: Json) -> None:

@@ -5,16 +5,18 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import replace
+from functools import partial
 from typing import Any, NamedTuple
 
 from tmpud.errors import SimulatorError
 from tmpud.events import Estimated, Event, Executed, Finished, Judged, Refused
+from tmpud.execution.memory import Memory, RecalledWorld, RecordedWorld, UnknownError
 from tmpud.experiments.running.tasks import SIM_CRASH, Json
 from tmpud.judging.rules import Kind
 from tmpud.presets import preset_named
 from tmpud.protocols import Simulator
 from tmpud.roads.loading import load_map
-from tmpud.runner import Mission, drive, sumo
+from tmpud.runner import Mission, WorldFactory, drive, sumo
 from tmpud.simulators import sumo_process
 
 RISKY = 0.5  # a merge driven below this Safe was a risk that the algorithm knew of
@@ -27,10 +29,14 @@ class Town(NamedTuple):
 
     mission: Mission
     simulator: Simulator
+    known: dict[Mission, Memory]  # mission but for the algorithm -> what came of each drive in it so far
 
 
 class FullTrials:
-    """Trials by several algorithms in the very same traffic: each goes on from one running town, in its own process."""
+    """Trials by several algorithms in the very same traffic: each goes on from one running town, in its own process.
+
+    An algorithm that decides as another did before it ends as that one did, and needs no simulation of its own.
+    """
 
     isolated = True
 
@@ -42,15 +48,25 @@ class FullTrials:
         """Return the town once its traffic flows."""
         mission = Mission(**{**shared, "via": tuple(shared.get("via", ()))})
         network = load_map(mission.map, preset_named(mission.preset).segment_length)
-        return Town(mission, sumo(network, mission))
+        return Town(mission, sumo(network, mission), {})
 
     def run(self, prepared: Town, arguments: Json) -> Json:
         """Drive one trial with the algorithm and preset of the arguments."""
         mission = replace(prepared.mission, **arguments)
-        result = summary(drive(mission, simulator=lambda *_: prepared.simulator, frames=False, alternatives=0))
+        memory = prepared.known.setdefault(replace(mission, algorithm="", beta=0.0), {})
+        try:
+            result = self._summary(mission, prepared, partial(RecalledWorld, memory))
+        except UnknownError:
+            result = self._summary(mission, prepared, partial(RecordedWorld, memory))
         if result["status"] == SIM_CRASH:
             raise SimulatorError(result["message"])
         return result
+
+    def notes(self, prepared: Town) -> dict[Mission, Memory]:
+        return prepared.known
+
+    def _summary(self, mission: Mission, town: Town, world: WorldFactory) -> dict[str, Any]:
+        return summary(drive(mission, simulator=lambda *_: town.simulator, frames=False, alternatives=0, world=world))
 
 
 def summary(events: Iterable[Event]) -> dict[str, Any]:
