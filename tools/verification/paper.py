@@ -99,7 +99,8 @@ def keep_calibration(folder: Path) -> list[Figure]:
 def _off(check: Check) -> str:
     off = "" if check.holds else f", off by {check.off:+.3f}"
     seen = f"{check.seen.value:.3f} [{check.seen.low:.3f}, {check.seen.high:.3f}]"
-    return f"with {check.neighbours} around: {check.foretold:.3f} against {seen}{off}"
+    at_gaps = f" ({check.at_gaps:.3f} at the town's gaps)" if check.at_gaps is not None else ""
+    return f"with {check.neighbours} around: {check.foretold:.3f}{at_gaps} against {seen}{off}"
 
 
 def same_results(options: Options) -> list[Figure]:

@@ -16,8 +16,8 @@ WORLD = {
 }
 
 
-def record(key: str, rows: list[tuple[int, bool]], status: str = DONE) -> Record:
-    merges = [{"neighbours": n, "unsafe": unsafe} for n, unsafe in rows]
+def record(key: str, rows: list[tuple[int, bool]], status: str = DONE, gap: float | None = None) -> Record:
+    merges = [{"neighbours": n, "unsafe": unsafe, "scores": {"gap": gap}} for n, unsafe in rows]
     return Record(key=key, digest="", status=status, result={"merges": merges})
 
 
@@ -45,6 +45,23 @@ def test_each_number_of_neighbours_is_put_to_its_learned_conditions() -> None:
         ("-", "-"),
         ("no", "+0.750"),
     ]
+
+
+def test_local_merges_are_weighted_by_the_gaps_of_the_towns() -> None:
+    local = [
+        record("local/x/1", [(1, True)] * 3 + [(1, False)], gap=-1.0),
+        record("local/x/2", [(1, False)] * 3 + [(1, True)], gap=5.0),
+        record("local/x/3", [(1, False)] * 4, gap=None),
+    ]
+    town = [
+        record("millbrook/120/1", [(1, False)] * 8, gap=None),
+        record("millbrook/120/2", [(1, False), (1, True)], gap=-1.0),
+        record("millbrook/120/3", [(2, True)], gap=6.0),
+    ]
+    one, two = checks([*local, *town], WORLD)
+    assert one.at_gaps == pytest.approx((8 * 0.0 + 2 * 0.75) / 10)
+    assert two.at_gaps == pytest.approx(0.25)
+    assert checks(town, WORLD)[0].at_gaps is None
 
 
 def test_a_drive_that_met_a_fault_counts_for_nothing() -> None:
