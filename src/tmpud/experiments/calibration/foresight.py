@@ -116,7 +116,7 @@ def check_table(found: Iterable[Check]) -> Table:
     near = f"within {REACH:g} m before and behind the ego, on its own lane or beside it"
     notes = (
         f"Shares of unsafe merges, by neighbours: {near}.",
-        "At the same gaps: what local merges foretell for the gaps on the target lane that the town's had (isotonic fit).",
+        "At the same gaps: what local merges foretell for the gaps on the target lane that the town's had (isotonic).",
     )
     return Table("What the learned worlds foretell, and the town", columns, rows, notes)
 
