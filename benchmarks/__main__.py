@@ -9,7 +9,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from benchmarks import full_step, growth, highway, load, plan, safety, start
+from benchmarks import full_step, growth, highway, load, plan, safety, start, trials
 from benchmarks.harness import DisagreementError, SkipError
 from benchmarks.report import as_json, headline, table, write
 
@@ -20,6 +20,7 @@ BENCHMARKS: dict[str, ModuleType] = {
     "start": start,
     "full_step": full_step,
     "highway": highway,
+    "trials": trials,
 }
 
 
