@@ -2,7 +2,7 @@
 
     python -m benchmarks trials --seeds 3
 
-Each round is one seed in normal and in heavy traffic. ``tmpud`` drives all five algorithms by one worker, as
+Each round is one seed, in normal and in heavy traffic. ``tmpud`` drives all five algorithms by one worker, as
 ``tmpud paper table1`` does; ``libsumo`` warms the same towns up, once each, and then only steps them, as often as the
 five trials took together. Times are of whole processes, with their start.
 """
@@ -14,6 +14,7 @@ import multiprocessing
 import resource
 import tempfile
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from benchmarks.harness import Result, progress
@@ -22,7 +23,7 @@ from tmpud.experiments.running.manifest import Experiment
 from tmpud.experiments.running.tasks import Json, Task
 from tmpud.experiments.running.workers import Limits
 from tmpud.experiments.trials.grid import cells
-from tmpud.experiments.trials.table1 import Table1
+from tmpud.experiments.trials.table1 import TRAFFIC, Table1
 from tmpud.roads import load_map
 from tmpud.runner import Mission
 from tmpud.simulators.sumo import SumoSimulator
@@ -42,6 +43,7 @@ class BareTown(SumoSimulator):
 
 def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seeds", type=int, default=3, help="rounds")
+    parser.add_argument("--traffic", type=int, nargs="+", default=list(TRAFFIC.values()), help="vehicles in each town")
 
 
 def measure(asked: argparse.Namespace) -> list[Result]:
@@ -49,7 +51,7 @@ def measure(asked: argparse.Namespace) -> list[Result]:
     steps = []
     for seed in range(FIRST_SEED, FIRST_SEED + asked.seeds):
         progress(f"seed {seed}")
-        grid = Table1(trials=1, first_seed=seed).grid()
+        grid = replace(Table1(trials=1, first_seed=seed).grid(), traffic={f"{n} vehicles": n for n in asked.traffic})
         tasks = [cell.task for cell in cells(grid)]
         before = _spent()
         took = _driven(tasks)
@@ -60,7 +62,7 @@ def measure(asked: argparse.Namespace) -> list[Result]:
         times[OURS].append(between - before)
         times[LIBSUMO].append(_spent() - between)
         steps.append(sum(took.values()))
-    title = "Table I, five algorithms in normal and heavy traffic"
+    title = f"Table I's five algorithms among {' and '.join(map(str, asked.traffic))} vehicles"
     return [Result(title, LIBSUMO, times, clock="CPU time of whole processes", facts={"steps": steps})]
 
 

@@ -25,6 +25,7 @@ TINY = {
     "safety": ("--vehicles", "1", "3", "--samples", "30", "--rounds", "3", "--instants", "4"),
     "start": ("--rounds", "1"),
     "full_step": ("--vehicles", "3", "--steps", "250", "--rounds", "1"),
+    "trials": ("--seeds", "1", "--traffic", "3"),
 }
 
 
