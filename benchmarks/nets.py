@@ -13,28 +13,31 @@ from tempfile import TemporaryDirectory
 
 from tmpud.roads.loading import map_file
 
-_GRID = re.compile(r"grid:(\d+):(\d+)")
+_GRID = re.compile(r"grid:(\d+):(\d+)(:even)?")
 BLOCK = 120  # [m]
 SHIFT = "normc(0,15,-30,30)"  # [m] by which crossings are moved, so that ways differ in length
 
 
 @contextmanager
 def net_file(name: str) -> Iterator[Path]:
-    """Give the net file of a town, of a path, or of ``grid:K:L``: K x K crossings, roads of L lanes each way."""
+    """Give the net file of a town, of a path, or of ``grid:K:L``: K x K crossings, roads of L lanes each way.
+
+    The blocks of ``grid:K:L:even`` are all alike, so that there are as many best ways as can be.
+    """
     found = _GRID.fullmatch(name)
     if not found:
         yield map_file(name)
         return
     with TemporaryDirectory() as folder:
         file = Path(folder) / f"grid-{found[1]}-{found[2]}.net.xml"
-        _netgenerate(file, crossings=found[1], lanes=found[2])
+        _netgenerate(file, crossings=found[1], lanes=found[2], even=bool(found[3]))
         yield file
 
 
-def _netgenerate(file: Path, crossings: str, lanes: str) -> None:
+def _netgenerate(file: Path, crossings: str, lanes: str, *, even: bool) -> None:
     """Draw a net without turning round, at one speed everywhere: the quickest way is the shortest one."""
     size = ["--grid", "--grid.number", crossings, "--default.lanenumber", lanes, "--grid.length", str(BLOCK)]
-    shape = ["--perturb-x", SHIFT, "--perturb-y", SHIFT, "--seed", "1"]
+    shape = [] if even else ["--perturb-x", SHIFT, "--perturb-y", SHIFT, "--seed", "1"]
     ways = ["--no-turnarounds", "--junctions.limit-turn-speed", "-1", "--no-warnings"]
     command = [_tool(), *size, *shape, *ways, "-o", str(file)]
     environment = {key: value for key, value in os.environ.items() if value or key != "SUMO_HOME"}

@@ -7,7 +7,8 @@ answers the new question. Our replan and the libraries have answered the old one
 libraries have the graph at hand with its new weight; our first plan starts from the map and every Cost, ASP by steps
 from the facts of the whole map. All must find the same least total of centimetres.
 
-Maps are towns, net files, or ``grid:K:L`` (netgenerate: K x K crossings, L lanes each way). Each lane is one segment
+Maps are towns, net files, or ``grid:K:L`` (netgenerate: K x K crossings, L lanes each way; ``grid:K:L:even``
+with blocks all alike). Each lane is one segment
 unless ``--segment-length`` says otherwise. ASP by steps takes part on small maps only; there, pairs are such as a
 plan of at most ``--horizon`` actions serves.
 """

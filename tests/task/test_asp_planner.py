@@ -4,11 +4,14 @@ from itertools import pairwise
 
 import pytest
 
+from benchmarks.nets import net_file
+from benchmarks.questions import graph_of
 from tests.task.agreement import Case, random_case
 from tests.task.oracle import order, simple_plans, triple
 from tests.task.tiny_roads import driven, grid, link, network, request, road, two_blocks
 from tmpud.errors import NoPlanError
 from tmpud.presets import PAPER, TMPUD, Preset, preset_named
+from tmpud.roads import load_map
 from tmpud.symbols import Action, LazyCost, OptimisticSafe, Place, ServiceRequest, State, TaskPlan, Transition
 from tmpud.task.asp_planner import AspPlanner
 
@@ -134,6 +137,16 @@ def test_the_solver_gives_the_best_plan_it_has_when_it_reaches_its_limit() -> No
     assert hasty.total_cm >= best.total_cm
     with pytest.raises(NoPlanError, match="gave up"):
         AspPlanner(roads, prune=False, conflicts=1).plan(start, goal, cost, OptimisticSafe())
+
+
+def test_that_none_of_many_equally_good_ways_is_better_takes_no_search() -> None:
+    with net_file("grid:18:2:even") as file:
+        graph = graph_of(load_map(str(file)))
+    asked = request("E12E13_0/0", "Q8Q7_1/0")
+    planner = AspPlanner(graph.network, conflicts=100)
+    found = planner.solve(asked.start_state(), asked, graph.cost, OptimisticSafe())
+    assert found.transitions > 3 * len(found.plan)
+    assert found.optimal
 
 
 @pytest.mark.parametrize("seed", range(60))

@@ -11,6 +11,7 @@ from tmpud.task.domain import Domain
 
 DOMAIN = ("driving.lp",)
 PLANNING = ("plan.lp", "quality.lp", "show.lp")
+REDUCED = ("plan.lp", "reduced.lp", "show.lp")
 ENCODING = DOMAIN + PLANNING
 PLACES = ("places.lp",)
 
@@ -39,6 +40,11 @@ def steps(domain: Domain, state: State, weights: Weights) -> str:
     """Return the instance of the encoding less ``driving.lp``: what that derives from the facts for these weights."""
     can = (f"can({spelled(step)},{step.next_state.leg},{weight})." for step, weight in weights.items())
     return "\n".join((*can, *_ends(domain, state), ""))
+
+
+def overs(reduced: Mapping[Transition, tuple[int, int, int]]) -> str:
+    """Return what ``reduced.lp`` takes as input beside ``steps``, from centimetres, merges and actions less a way's."""
+    return "".join(f"over({spelled(step)},{merges},{actions}).\n" for step, (_, merges, actions) in reduced.items())
 
 
 def places(domain: Domain, state: State, weights: Weights) -> str:

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from tmpud.symbols import State, Transition
 from tmpud.task.corridor import Corridor, Search, corridor, whole_map
 from tmpud.task.domain import Domain
-from tmpud.task.facts import PLACES, PLANNING, encoding, facts, places, steps
+from tmpud.task.facts import PLACES, PLANNING, REDUCED, encoding, facts, overs, places, steps
 from tmpud.task.solver import ask, ask_one
 from tmpud.task.ties import preferred
 from tmpud.task.utility import check_total, most, split
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from tmpud.task.rules import Rules
 
 WIDER = (1.25, 2.0)  # times the optimum without rules, while the rules allow no plan; after these the whole map
+LARGE = 100  # transitions; beyond, merges and actions are told less the way's too, which takes longer to write
 NARROW = 100_00  # [cm] added to it
 
 
@@ -47,6 +48,7 @@ class Prover:
     prune: bool = True
     rules: Rules | None = None
     options: Sequence[str] = ()  # of the solver
+    large: int = LARGE
 
     def prove(self, domain: Domain, search: Search, state: State) -> Proof | None:
         """Return the best plans from a state, None where no way leads to the goal; raises NoPlanError at a limit."""
@@ -73,12 +75,14 @@ class Prover:
         return _summed([*rounds, self._on_the_map(domain, search, state)])
 
     def _in_corridor(self, domain: Domain, state: State, given: Corridor) -> Proof:
-        weights = shifted(given)
-        return self._ask(encoding(PLANNING) + steps(domain, state, weights), domain, state, given)
+        less = reduced(given)
+        program = steps(domain, state, {step: weight for step, (weight, _, _) in less.items()})
+        program += encoding(REDUCED) + overs(less) if len(less) > self.large else encoding(PLANNING)
+        return self._ask(program, domain, state, given)
 
     def _on_the_map(self, domain: Domain, search: Search, state: State) -> Proof:
         given = whole_map(search, state)
-        weights = shifted(given)
+        weights = {step: split(rank)[0] for step, rank in given.ranks.items()}
         return self._ask(encoding() + facts(domain, state, weights), domain, state, given)
 
     def _ask(self, program: str, domain: Domain, state: State, given: Corridor) -> Proof:
@@ -92,16 +96,17 @@ class Prover:
         return Proof(answer.union, total, answer.optimal, len(given.ranks), 1, answer.ground_s, answer.solve_s)
 
 
-def shifted(given: Corridor) -> dict[Transition, int]:
-    """Return each weight with the distances from the start taken out [cm]: every plan's total shrinks by the optimum.
+def reduced(given: Corridor) -> dict[Transition, tuple[int, int, int]]:
+    """Return centimetres, merges and actions with the distances from the start taken out of them.
 
-    The best plans then total 0, where the solver starts.
+    Every plan's total shrinks by the optimum. The best plans then total 0, where the solver starts.
     """
-    centimetres = {state: split(rank)[0] for state, rank in given.distance.items()}
-    return {
-        step: split(rank)[0] + centimetres[step.state] - centimetres[step.next_state]
-        for step, rank in given.ranks.items()
-    }
+    way = {state: split(rank) for state, rank in given.distance.items()}
+    found = {}
+    for step, rank in given.ranks.items():
+        here, there, own = way[step.state], way[step.next_state], split(rank)
+        found[step] = own[0] + here[0] - there[0], own[1] + here[1] - there[1], own[2] + here[2] - there[2]
+    return found
 
 
 def _summed(rounds: Sequence[Proof]) -> Proof:
