@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tmpud.geometry import Polyline, wrap_angle
+from tmpud.geometry import Point, Polyline, wrap_angle
 
 
 @given(st.floats(-100, 100))
@@ -21,6 +21,21 @@ def test_projecting_a_point_beside_a_curve_returns_its_station_and_offset(statio
     x, y, heading = line.pose_at(station, offset)
     assert heading == 0
     assert line.project(x, y) == pytest.approx((station, offset), abs=1e-9)
+
+
+POINT = st.tuples(st.floats(-50, 50), st.floats(-50, 50))
+
+
+@given(st.lists(POINT, min_size=2, max_size=6, unique_by=lambda p: (round(p[0]), round(p[1]))), POINT)
+def test_the_least_distance_of_a_point_is_never_more_than_its_distance(curve: list[Point], point: Point) -> None:
+    line = Polyline(curve)
+    assert line.least_distance(*point) <= abs(line.project(*point)[1]) + 1e-9
+
+
+def test_the_least_distance_of_a_point_before_or_beyond_a_straight_line_is_its_distance() -> None:
+    line = Polyline([(0, 0), (5, 0), (10, 0)])
+    assert line.least_distance(-3, 0) == pytest.approx(3)
+    assert line.least_distance(14, 0) == pytest.approx(4)
 
 
 def test_the_parts_of_a_polyline_add_up_to_its_length() -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from tmpud.errors import InvalidStateError
 from tmpud.geometry import Pose, wrap_angle
@@ -68,4 +68,5 @@ def step(state: VehicleState, control: Control, dt: float, limits: VehicleLimits
     if not all(map(math.isfinite, (*pose, speed))):
         raise InvalidStateError(f"the ego's state is not finite: {pose}, {speed} m/s")
     acceleration = (speed - state.speed) / dt
-    return replace(state, pose=pose, speed=speed, yaw_rate=yaw_rate, acceleration=acceleration)
+    # Not by replace(), which takes three times as long
+    return VehicleState(state.id, pose, state.lane, state.z, speed, yaw_rate, acceleration, state.length, state.width)

@@ -23,6 +23,8 @@ class Pose(NamedTuple):
 
 def wrap_angle(angle: float) -> float:
     """Return the same direction in (-pi, pi]."""
+    if -math.pi < angle <= math.pi:
+        return angle
     wrapped = math.fmod(angle, math.tau)
     if wrapped <= -math.pi:
         return wrapped + math.tau
@@ -106,6 +108,11 @@ class Polyline:
             if squared < nearest:
                 nearest, found = squared, (begin + along, ex * dy - ey * dx)
         return found[0], math.copysign(math.sqrt(nearest), found[1])
+
+    def least_distance(self, x: float, y: float) -> float:
+        """Return a distance [m] that a point has from the curve at least, at once: a detour by it is no shorter."""
+        (x0, y0), (x1, y1) = self.points[0], self.points[-1]
+        return (math.hypot(x - x0, y - y0) + math.hypot(x - x1, y - y1) - self.stations[-1]) / 2
 
     def between(self, start: float, end: float) -> Polyline:
         """Return the part from one station to another; ValueError where it has no length."""

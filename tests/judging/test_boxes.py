@@ -16,12 +16,12 @@ def test_overlaps_agree_with_shapely() -> None:
 
 
 def test_no_vehicles_overlap_nothing() -> None:
-    assert overlapping(Box(0, 0, 0, 4, 2), Vehicles.of([])).size == 0
+    assert overlapping(Box(0, 0, 0, 4, 2), Vehicles.of([])) == []
 
 
 def test_bumper_to_bumper_is_contact_and_a_millimetre_apart_is_none() -> None:
     others = Vehicles.of([car(4.7, name="a"), car(4.701, name="b"), car(0, 1.9, name="c"), car(0, -1.901, name="d")])
-    assert list(overlapping(box_of(car(0)), others)) == [0, 2]
+    assert overlapping(box_of(car(0)), others) == [0, 2]
 
 
 @pytest.mark.parametrize(("front", "x"), [(True, 2.1), (False, -2.1)])

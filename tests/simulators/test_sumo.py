@@ -245,5 +245,5 @@ def test_in_a_standing_queue_the_ego_takes_a_place_that_nobody_slips_into(
         scene = town.reset("a_0", 40.0)
         assert "beside" in scene.others.ids
         for _ in range(20):
-            assert not overlapping(box_of(scene.ego), scene.others).size
+            assert not overlapping(box_of(scene.ego), scene.others)
             scene = town.step(Control(-3.0, 0.0))

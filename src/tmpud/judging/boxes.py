@@ -1,12 +1,9 @@
-"""Overlap of oriented boxes by separating axes: one box against N vehicles at once."""
+"""Overlap of oriented boxes by separating axes: one box against N vehicles."""
 
 from __future__ import annotations
 
 import math
 from typing import NamedTuple
-
-import numpy as np
-from numpy.typing import NDArray
 
 from tmpud.scene import Vehicles, VehicleState
 
@@ -32,23 +29,29 @@ def part_of(box: Box, depth: float, front: bool) -> Box:
     return Box(x, y, box.heading, depth, box.width)
 
 
-def overlapping(box: Box, others: Vehicles) -> NDArray[np.intp]:
+def overlapping(box: Box, others: Vehicles) -> list[int]:
     """Return the indices of the vehicles whose boxes overlap a box, seen from above; touching counts."""
-    reach = (math.hypot(box.length, box.width) + np.hypot(others.length, others.width)) / 2
-    near = np.flatnonzero(np.hypot(others.x - box.x, others.y - box.y) <= reach)
-    return near[_overlap(box, others, near)] if near.size else near
+    # One vehicle after the other: for the dozen in sight this takes less time than arrays
+    reach = box.length + box.width
+    columns = (others.x, others.y, others.heading, others.length, others.width)
+    rows = enumerate(zip(*(column.tolist() for column in columns), strict=True))
+    return [
+        i
+        for i, (x, y, heading, length, width) in rows
+        if 2 * math.hypot(x - box.x, y - box.y) <= reach + length + width
+        and _overlap(box, Box(x, y, heading, length, width))
+    ]
 
 
-def _overlap(box: Box, others: Vehicles, near: NDArray[np.intp]) -> NDArray[np.bool_]:
-    """Whether no side of either box separates the two, for each of the K vehicles ``near``."""
-    dx, dy = others.x[near] - box.x, others.y[near] - box.y
-    length, width, heading = others.length[near], others.width[near], others.heading[near]
-    cos, sin = np.abs(np.cos(heading - box.heading)), np.abs(np.sin(heading - box.heading))
-    own_x, own_y = math.cos(box.heading), math.sin(box.heading)
-    their_x, their_y = np.cos(heading), np.sin(heading)
-    return np.asarray(
-        (np.abs(dx * own_x + dy * own_y) * 2 <= box.length + cos * length + sin * width)
-        & (np.abs(dy * own_x - dx * own_y) * 2 <= box.width + sin * length + cos * width)
-        & (np.abs(dx * their_x + dy * their_y) * 2 <= length + cos * box.length + sin * box.width)
-        & (np.abs(dy * their_x - dx * their_y) * 2 <= width + sin * box.length + cos * box.width)
+def _overlap(one: Box, other: Box) -> bool:
+    """Whether no side of either box separates the two."""
+    dx, dy = other.x - one.x, other.y - one.y
+    cos, sin = abs(math.cos(other.heading - one.heading)), abs(math.sin(other.heading - one.heading))
+    own_x, own_y = math.cos(one.heading), math.sin(one.heading)
+    their_x, their_y = math.cos(other.heading), math.sin(other.heading)
+    return (
+        abs(dx * own_x + dy * own_y) * 2 <= one.length + cos * other.length + sin * other.width
+        and abs(dy * own_x - dx * own_y) * 2 <= one.width + sin * other.length + cos * other.width
+        and abs(dx * their_x + dy * their_y) * 2 <= other.length + cos * one.length + sin * one.width
+        and abs(dy * their_x - dx * their_y) * 2 <= other.width + sin * one.length + cos * one.width
     )

@@ -22,7 +22,7 @@ class Collisions:
         self._hit: set[str] = set()
 
     def observe(self, scene: Scene) -> Iterable[Verdict]:
-        for i in map(int, overlapping(box_of(scene.ego), scene.others)):
+        for i in overlapping(box_of(scene.ego), scene.others):
             name = scene.others.ids[i]
             if name not in self._hit and abs(scene.others.z[i] - scene.ego.z) < self._rules.level:
                 self._hit.add(name)
@@ -55,7 +55,7 @@ class Collisions:
         return "other" if along else "crossing", "ego" if drove else "other"
 
     def _touches(self, ego: Box, other: Vehicles, front: bool) -> bool:
-        return overlapping(part_of(ego, self._rules.bumper, front), other).size > 0
+        return bool(overlapping(part_of(ego, self._rules.bumper, front), other))
 
 
 def _behind(ego: Box, other: Vehicles) -> bool:

@@ -32,6 +32,8 @@ class Judge:
             Jumps(rules),
             Speeding(network, rules),
         )
+        self._all = (*self._followers, *self._road)
+        self._collided = False
         self.verdicts: tuple[Verdict, ...] = ()
 
     def merge_began(self, scene: Scene, origin_lane: str, target_lane: str, transition: str = "merge") -> None:
@@ -43,8 +45,8 @@ class Judge:
         self._merges.observe(scene)
         self._comfort.observe(scene)
         new = list(self._collisions.observe(scene))
-        collided = bool(new or self.collisions)
-        for rule in self._road if collided else (*self._followers, *self._road):
+        self._collided = self._collided or bool(new)
+        for rule in self._road if self._collided else self._all:
             new.extend(rule.observe(scene))
         self.verdicts += tuple(new)
         return tuple(new)

@@ -11,7 +11,6 @@ import math
 import random
 from collections.abc import Sequence
 from contextlib import AbstractContextManager
-from dataclasses import replace
 from types import TracebackType
 from typing import Any, Self
 
@@ -200,9 +199,11 @@ class SumoSimulator:
         Only the next ones are looked at, and the one before.
         """
         first = max(self._at - 1, 0)
-        offsets = [abs(line.project(x, y)[1]) for _, line in self._way[first : self._at + NEXT_LANES]]
-        near = min(offsets) + JOINT
-        return first + max(i for i, offset in enumerate(offsets) if offset < near)
+        near = abs(self._way[self._at][1].project(x, y)[1]) + JOINT
+        lines = [(i, line) for i, (_, line) in enumerate(self._way[first : self._at + NEXT_LANES], first)]
+        offsets = {i: abs(line.project(x, y)[1]) for i, line in lines if line.least_distance(x, y) < near}
+        near = min(offsets.values()) + JOINT
+        return max(i for i, offset in offsets.items() if offset < near)
 
     def _advance(self) -> None:
         self._sumo.simulationStep()
@@ -228,7 +229,10 @@ class SumoSimulator:
         if self._ego is None or (EGO_ID not in seen and EGO_ID not in self._sumo.vehicle.getIDList()):
             raise SimulatorError("the ego vanished from the simulation")
         z = self._sumo.vehicle.getPosition3D(EGO_ID)[2]
-        self._ego = replace(self._ego, lane=self._way[self._at][0], z=z)
+        ego, lane = self._ego, self._way[self._at][0]
+        self._ego = VehicleState(
+            EGO_ID, ego.pose, lane, z, ego.speed, ego.yaw_rate, ego.acceleration, ego.length, ego.width
+        )
         time = round(self._sumo.simulation.getTime(), 3)
         signals = self._reader.signals(self._network.signals, time)
         return Scene(time, self._ego, self._reader.vehicles(seen, self._steps), signals)

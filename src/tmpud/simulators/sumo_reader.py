@@ -78,5 +78,7 @@ class SumoReader:
 
     def _yaw_rate(self, vehicle: str, heading: float, step: int) -> float:
         """Return the mean yaw rate since the vehicle was first seen within the window [rad/s]."""
-        then, first = next((then, seen[vehicle]) for then, seen in self._headings if vehicle in seen)
-        return wrap_angle(heading - first) / ((step - then) * DT) if step > then else 0.0
+        then, seen = self._headings[0]
+        if vehicle not in seen:
+            then, seen = next(noted for noted in self._headings if vehicle in noted[1])
+        return wrap_angle(heading - seen[vehicle]) / ((step - then) * DT) if step > then else 0.0
