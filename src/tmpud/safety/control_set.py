@@ -74,9 +74,8 @@ def safety_index(ego: Trajectory, others: Vehicles, predicted: FloatArray, prese
     apart = d >= TOUCHING
     safe_d = np.where(apart, d, 1.0)
     d_dot = np.where(apart, (dx * dvx + dy * dvy) / safe_d, 0.0)
-    drifting = (
-        dvx * dvx + dvy * dvy - turning_i - d_dot**2
-    ) / safe_d  # d'' of an ego that neither accelerates nor turns
+    # d'' of an ego that neither accelerates nor turns
+    drifting = (dvx * dvx + dvy * dvy - turning_i - d_dot**2) / safe_d
     alpha = preset.closing_weight
     return SafetyIndex(
         phi=preset.safety_distance**2 - d**2 - alpha * d_dot,
