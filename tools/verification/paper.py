@@ -12,7 +12,6 @@ from pathlib import Path
 
 from tmpud.experiments.calibration.foresight import Check, checks
 from tmpud.experiments.calibration.predictions import measured
-from tmpud.experiments.calibration.report import FIRST_SEED as CALIBRATION_SEED
 from tmpud.experiments.kinds import Findings, findings
 from tmpud.experiments.reports.document import write_report
 from tmpud.experiments.running.campaign import run_campaign
@@ -66,7 +65,8 @@ def calibration(options: Options) -> list[Figure]:  # noqa: ARG001
 def keep_calibration(folder: Path) -> list[Figure]:
     """Keep the report of a calibration that was run, and return its figures."""
     _keep_files(folder, "calibration")
-    done = read_results(folder).records
+    results = read_results(folder)
+    done, seed = results.records, results.manifest["options"]["first_seed"]
     faults = sum(record.status != DONE for record in done)
     foretold = [check for check in checks(done, read_world()) if check.foretold is not None]
     areas = [
@@ -83,7 +83,7 @@ def keep_calibration(folder: Path) -> list[Figure]:
             "docs/results/calibration/report.md",
             target="0 tool faults",
             holds=not faults,
-            seed=CALIBRATION_SEED,
+            seed=seed,
         ),
         Figure(
             what="unsafe share of merges that the learned worlds foretell, against the town's (merges)",
@@ -91,7 +91,7 @@ def keep_calibration(folder: Path) -> list[Figure]:
             result="; ".join(map(_off, foretold)),
             target="within the town's 95 % interval; if not, by how much it is off",
             holds=all(check.holds for check in foretold),
-            seed=CALIBRATION_SEED,
+            seed=seed,
         ),
     ]
 

@@ -47,10 +47,10 @@ class MergeGaps(NamedTuple):
     rss_ratio: float  # gap by RSS safe distance; below 1 RSS calls it dangerous
 
 
-def merge_gaps(scene: Scene, step: Transition, network: RoadNetwork, rss: RssParameters | None = None) -> MergeGaps:
+def merge_gaps(scene: Scene, step: Transition, network: RoadNetwork) -> MergeGaps:
     """Return the scores of a merge if it is begun in this scene."""
     found = lane_gaps(scene, network.lanes[network.segments[step.next_state.segment].lane])
-    ratio = found.gap / safe_distance(found.rear_speed, found.front_speed, rss or RssParameters())
+    ratio = found.gap / safe_distance(found.rear_speed, found.front_speed, RssParameters())
     return MergeGaps(*(float(score.min(initial=math.inf)) for score in (found.gap, time_to_collision(found), ratio)))
 
 

@@ -88,7 +88,7 @@ def test_a_row_says_what_was_predicted_and_what_came_of_it() -> None:
 
 
 def test_tasks_are_told_apart_and_each_drive_has_its_own_town() -> None:
-    tasks = [*town_tasks(25, 60_000), *local_tasks(250, 60_000)]
+    tasks = [*town_tasks(25, 60_000, "millbrook"), *local_tasks(250, 60_000)]
     assert len({task.key for task in tasks}) == len(tasks) == 2 * 25 + 4 * 3
     assert len({json.dumps(task.shared) for task in tasks if task.shared}) == 2 * 25
     assert [task.digest for task in tasks[:2]] != [tasks[0].digest] * 2

@@ -19,6 +19,7 @@ from tmpud.scene import FloatArray
 Truth = NDArray[np.bool_]  # (n,) whether the merge was unsafe
 RESAMPLES = 1000
 FOLDS = 10
+BINS = 10
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -100,10 +101,10 @@ def refusals(safety: FloatArray, unsafe: Truth, betas: Sequence[float]) -> tuple
     return tuple(found)
 
 
-def reliability(probability: FloatArray, unsafe: Truth, count: int = 10) -> tuple[Bin, ...]:
+def reliability(probability: FloatArray, unsafe: Truth) -> tuple[Bin, ...]:
     """Return the bins of equal width that hold a merge; the last one holds its upper end too."""
-    edges = np.linspace(0.0, 1.0, count + 1)
-    index = np.clip(np.searchsorted(edges, probability, side="right") - 1, 0, count - 1)
+    edges = np.linspace(0.0, 1.0, BINS + 1)
+    index = np.clip(np.searchsorted(edges, probability, side="right") - 1, 0, BINS - 1)
     return tuple(
         Bin(
             float(edges[i]),
@@ -112,7 +113,7 @@ def reliability(probability: FloatArray, unsafe: Truth, count: int = 10) -> tupl
             float(probability[index == i].mean()),
             float(unsafe[index == i].mean()),
         )
-        for i in range(count)
+        for i in range(BINS)
         if (index == i).any()
     )
 
@@ -141,9 +142,7 @@ def isotonic(safety: FloatArray, unsafe: Truth) -> Isotonic:
     return Isotonic(levels, np.repeat([hits / n for hits, n, _ in blocks], [count for _, _, count in blocks]))
 
 
-def recalibrated(
-    safety: FloatArray, unsafe: Truth, groups: NDArray[np.intp], rng: np.random.Generator, folds: int = FOLDS
-) -> FloatArray:
+def recalibrated(safety: FloatArray, unsafe: Truth, groups: NDArray[np.intp], rng: np.random.Generator) -> FloatArray:
     """Return each merge's probability of being unsafe (n,), fitted to the merges of other groups only.
 
     Raises ValueError where there is only one group.
@@ -151,7 +150,7 @@ def recalibrated(
     count = int(groups.max()) + 1
     if count < 2:
         raise ValueError("cross-validation needs two groups of merges")
-    fold = (rng.permutation(count) % min(folds, count))[groups]
+    fold = (rng.permutation(count) % min(FOLDS, count))[groups]
     probability = np.empty(len(safety))
     for held in np.unique(fold):
         out = fold == held

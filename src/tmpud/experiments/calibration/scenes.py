@@ -17,6 +17,7 @@ from tmpud.execution.deliberation import Deliberation
 from tmpud.experiments.calibration.scores import PRESETS, MergePanel, SeenMerge, neighbours_of
 from tmpud.experiments.running.tasks import SIM_CRASH, Json, Task
 from tmpud.experiments.trials.full import FullTrials, Town
+from tmpud.experiments.trials.table1 import TRAFFIC
 from tmpud.experiments.worlds.merges import CONDITIONS, ROADS, LocalArea, local_merges, local_network
 from tmpud.judging.rules import JudgingRules, Kind
 from tmpud.presets import TMPUD
@@ -31,14 +32,8 @@ WATCHED = JudgingRules().merge_window  # [s]
 MOST_EXTRA = 2  # actions by which a merge that was not planned may lengthen the plan
 
 
-def town_tasks(
-    drives: int,
-    first_seed: int,
-    map_: str = "millbrook",
-    traffic: Iterable[int] = (120, 200),
-    presets: Sequence[str] = PRESETS,
-) -> list[Task]:
-    """Return drives on random missions, so many for each number of vehicles."""
+def town_tasks(drives: int, first_seed: int, map_: str) -> list[Task]:
+    """Return drives on random missions, so many for each density of Table I."""
     return [
         Task(
             key=f"{map_}/{vehicles}/{seed}",
@@ -52,21 +47,21 @@ def town_tasks(
                 "traffic": vehicles,
                 "seed": seed,
             },
-            arguments={"presets": list(presets)},
+            arguments={"presets": list(PRESETS)},
         )
-        for vehicles in traffic
+        for vehicles in TRAFFIC.values()
         for seed in range(first_seed, first_seed + drives)
     ]
 
 
-def local_tasks(merges: int, first_seed: int, presets: Sequence[str] = PRESETS) -> list[Task]:
+def local_tasks(merges: int, first_seed: int) -> list[Task]:
     """Return runs of ROADS forced merges each, so many merges for each of the paper's road conditions."""
     return [
         Task(
             key=f"local/{condition}/{seed}",
             work="local merge scenes",
             shared={},
-            arguments={"condition": condition, "seed": seed, "merges": ROADS, "presets": list(presets)},
+            arguments={"condition": condition, "seed": seed, "merges": ROADS, "presets": list(PRESETS)},
         )
         for condition in CONDITIONS
         for seed in range(first_seed, first_seed + math.ceil(merges / ROADS))

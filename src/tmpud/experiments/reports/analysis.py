@@ -52,7 +52,7 @@ def analyse(
         reference=reference,
         pairs=pairs,
         cells=tuple(cell for paired in pairs for cell in cells(paired, table, rng, resamples)),
-        findings=tuple(finding for paired in pairs for finding in judge(paired, rng, resamples=resamples)),
+        findings=tuple(finding for paired in pairs for finding in judge(paired, rng, resamples)),
     )
 
 

@@ -6,7 +6,7 @@ import signal
 import sys
 import threading
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import closing, contextmanager
 from pathlib import Path
 from types import FrameType
@@ -33,7 +33,6 @@ def run_campaign(
     *,
     limits: Limits,
     progress: Progress | None = None,
-    warn: Callable[[str], None] = complain,
 ) -> Iterator[Record]:
     """Yield a record of each task: first those already in the folder, then others as they are done and safe on disk.
 
@@ -44,10 +43,10 @@ def run_campaign(
     check(tasks)
     with _terminable(), Store(folder, experiment, tasks) as store:
         for damage in store.damages:
-            warn(damage)
+            complain(damage)
         done = {key: record for key, record in store.records.items() if record.status == DONE}
         if faults := len(store.records) - len(done):
-            warn(f"{faults} of {len(tasks)} tasks ended in a tool fault before; trying again")
+            complain(f"{faults} of {len(tasks)} tasks ended in a tool fault before; trying again")
         missing = [task for task in tasks if task.key not in done]
         if progress:
             progress.skip(len(tasks) - len(missing))

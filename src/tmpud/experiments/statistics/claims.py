@@ -120,11 +120,9 @@ def _tmpud() -> list[Claim]:
 CLAIMS = (*_no_com(), *_over_beta(), *_tmpud())
 
 
-def judge(
-    paired: Paired, rng: np.random.Generator, claims: Iterable[Claim] = CLAIMS, resamples: int = RESAMPLES
-) -> tuple[Finding, ...]:
+def judge(paired: Paired, rng: np.random.Generator, resamples: int = RESAMPLES) -> tuple[Finding, ...]:
     """Return what one condition's trials say about the claims whose two algorithms were run, in the claims' order."""
-    asked = [claim for claim in claims if {claim.first, claim.second} <= set(paired.algorithms)]
+    asked = [claim for claim in CLAIMS if {claim.first, claim.second} <= set(paired.algorithms)]
     by_distance = [claim for claim in asked if claim.measure == "distance"]
     by_safety = [claim for claim in asked if claim.measure == "unsafe"]
     found = dict(zip(by_distance, _distances(paired, by_distance, rng, resamples), strict=True))

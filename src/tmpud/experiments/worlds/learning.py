@@ -20,8 +20,6 @@ from tmpud.experiments.worlds.models import FORMAT, LETTERS, preset_fields
 from tmpud.presets import PRESETS
 from tmpud.simulators.local import PlacementLaw
 
-MERGES = 2000  # per condition
-SEED = 2024
 DIGITS = 4  # of Safe
 _LOCAL = ("seed", "chunk", "roads")
 _LETTER = {outcome: letter for letter, outcome in LETTERS.items()}
@@ -46,7 +44,7 @@ class LearningRuns:
         return {"outcome": "".join(_LETTER[merge.outcome] for merge in merges), "safe": safe}
 
 
-def tasks(merges: int = MERGES, seed: int = SEED, roads: int = ROADS) -> list[Task]:
+def tasks(merges: int, seed: int, roads: int = ROADS) -> list[Task]:
     """Return the tasks of at least ``merges`` merges per condition, in whole chunks of ``roads``."""
     shared = {"presets": sorted(PRESETS)}
     return [

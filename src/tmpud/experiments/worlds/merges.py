@@ -80,22 +80,18 @@ def local_network(preset: Preset) -> RoadNetwork:
         return read_sumo_net(write_net(Path(folder), 1), segment_length=preset.segment_length)
 
 
-def local_merges(
-    condition: Condition, count: int, seed: int, *, law: PlacementLaw | None = None, roads: int = ROADS
-) -> Iterator[LocalMerge]:
+def local_merges(condition: Condition, count: int, seed: int, *, roads: int = ROADS) -> Iterator[LocalMerge]:
     """Yield ``count`` forced merges in order; the first of a longer series are those of a shorter one."""
-    chunks = (local_chunk(condition, seed, chunk, law=law, roads=roads) for chunk in itertools.count())
+    chunks = (local_chunk(condition, seed, chunk, roads=roads) for chunk in itertools.count())
     yield from itertools.islice(itertools.chain.from_iterable(chunks), count)
 
 
-def local_chunk(
-    condition: Condition, seed: int, chunk: int, *, law: PlacementLaw | None = None, roads: int = ROADS
-) -> Iterator[LocalMerge]:
+def local_chunk(condition: Condition, seed: int, chunk: int, *, roads: int) -> Iterator[LocalMerge]:
     """Yield the merges of one fresh simulation, one on each road.
 
     A run with a collision before the decision is left out.
     """
-    law, area = law or PlacementLaw(), LocalArea(TMPUD)
+    law, area = PlacementLaw(), LocalArea(TMPUD)
     with LocalRoads(condition, roads, CHUNKS * seed + chunk, law) as town:
         runs = {road: _Run(area, scene) for road, scene in town.scenes.items()}
         active = dict(runs)
