@@ -8,11 +8,11 @@ import pytest
 
 from tmpud.errors import RequestError, RunFileError
 from tmpud.experiments.running.tasks import DONE, ERROR, Record, Task
-from tmpud.experiments.statistics.paper_numbers import ALGORITHMS
+from tmpud.experiments.statistics.paper_numbers import ALGORITHMS, FIGURE4
 from tmpud.experiments.statistics.rows import TrialRow
 from tmpud.experiments.trials.abstract import AbstractTrials
 from tmpud.experiments.trials.figure4 import Figure4
-from tmpud.experiments.worlds.models import CONDITIONS, FORMAT, preset_fields
+from tmpud.experiments.worlds.models import FORMAT, preset_fields
 from tmpud.presets import TMPUD
 
 ALWAYS_SAFE = ("m", "1")
@@ -26,7 +26,7 @@ def write(tmp_path: Path) -> Any:
         condition = {"samples": {"outcome": samples[0], "safe": {"tmpud": samples[1]}}}
         path = tmp_path / f"{samples[0]}.json"
         world = {"format": FORMAT, "presets": {"tmpud": preset_fields(TMPUD)}}
-        path.write_text(json.dumps({**world, "conditions": dict.fromkeys(CONDITIONS, condition)}))
+        path.write_text(json.dumps({**world, "conditions": dict.fromkeys(FIGURE4, condition)}))
         return str(path)
 
     return written
@@ -51,7 +51,7 @@ def test_every_condition_algorithm_and_trial_is_there_once_in_its_batch(write: A
     figure = Figure4(trials=12, batches=3, world=write(ALWAYS_SAFE))
     rows = figure.rows(run(figure))
     keys = {(row.condition, row.algorithm, row.trial) for row in rows}
-    assert len(rows) == len(keys) == 12 * len(CONDITIONS) * len(ALGORITHMS)
+    assert len(rows) == len(keys) == 12 * len(FIGURE4) * len(ALGORITHMS)
     assert {row.batch for row in rows} == {0, 1, 2}
     assert all(row.batch == row.trial // 4 for row in rows)
 

@@ -8,9 +8,12 @@ import pytest
 from tmpud.errors import RunFileError
 from tmpud.execution.abstract import COLLIDE, MERGE, STOP
 from tmpud.experiments.running.tasks import DONE, ERROR, Record
+from tmpud.experiments.statistics.paper_numbers import FIGURE4
 from tmpud.experiments.worlds.learning import LearningRuns, tasks, to_json, world
-from tmpud.experiments.worlds.models import CONDITIONS, joint_sample, read_world
+from tmpud.experiments.worlds.models import joint_sample, read_world
 from tmpud.presets import PRESETS, TMPUD, preset_named
+
+CONDITIONS = tuple(FIGURE4)
 
 
 def learnt(merges: int = 8, roads: int = 4, seed: int = 5) -> list[Record]:

@@ -4,8 +4,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from tmpud.experiments.statistics.paper_numbers import FIGURE4
 from tmpud.experiments.worlds.merges import CONDITIONS, LocalArea, LocalMerge, local_merges
-from tmpud.experiments.worlds.models import CONDITIONS as NAMES
 from tmpud.judging.rules import Kind
 from tmpud.presets import PRESETS
 from tmpud.scene import Scene
@@ -26,7 +26,7 @@ def safe(scene: Scene) -> dict[str, float]:
 
 
 def test_there_are_the_conditions_of_the_paper() -> None:
-    assert tuple(CONDITIONS) == NAMES
+    assert tuple(CONDITIONS) == tuple(FIGURE4)
     assert [(c.neighbours, c.acceleration) for c in CONDITIONS.values()] == [(1, 0.5), (1, 1.0), (3, 0.5), (3, 1.0)]
 
 

@@ -9,13 +9,14 @@ from typing import Any
 
 from tmpud.errors import RequestError
 from tmpud.experiments.running.tasks import DONE, Record, Task, digest
-from tmpud.experiments.statistics.paper_numbers import ALGORITHMS
+from tmpud.experiments.statistics.paper_numbers import ALGORITHMS, FIGURE4
 from tmpud.experiments.statistics.rows import TrialRow
-from tmpud.experiments.worlds.models import CONDITIONS, SHIPPED, read_world
+from tmpud.experiments.worlds.models import SHIPPED, read_world
 from tmpud.roads.places import RANDOM
 from tmpud.roads.towns import PAPER_MISSIONS
 
 CHUNK = 250  # trials of a task
+PER_TRIAL = ("status", "distance", "collisions", "stops")  # of a task's result
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -50,7 +51,7 @@ class Figure4:
             "world": self.world,
             "learnt": digest(read_world(self.world)["conditions"]),
         }
-        return [self._task(shared, *which) for which in product(CONDITIONS, ALGORITHMS, self._chunks())]
+        return [self._task(shared, *which) for which in product(FIGURE4, ALGORITHMS, self._chunks())]
 
     def rows(self, records: Iterable[Record]) -> list[TrialRow]:
         """Return one row for each trial whose task gave a result, and one with the fault for each other."""
@@ -92,7 +93,7 @@ class Figure4:
         condition, algorithm, _ = task.key.split("/")
         first, count = task.arguments["first"], task.arguments["count"]
         for i in range(count):
-            result = {name: values[i] for name, values in record.result.items() if name in _PER_TRIAL}
+            result = {name: values[i] for name, values in record.result.items() if name in PER_TRIAL}
             collisions, stops = result.get("collisions", 0), result.get("stops", 0)
             yield TrialRow(
                 condition=condition,
@@ -104,9 +105,6 @@ class Figure4:
                 unsafe=bool(collisions or stops),
                 details={"collisions": {"merge": collisions}, "forced_stops": 0 if collisions else stops},
             )
-
-
-_PER_TRIAL = ("status", "distance", "collisions", "stops")
 
 
 DEVIATIONS = (

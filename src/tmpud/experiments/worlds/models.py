@@ -15,7 +15,6 @@ from tmpud.presets import Preset
 SHIPPED = "shipped"
 _SHIPPED_FILE = Path(__file__).parent / "local.json"
 FORMAT = "tmpud local world 1"
-CONDITIONS = tuple(f"{d} density, {a} acceleration" for d in ("low", "high") for a in ("low", "high"))
 ESTIMATE = (  # the fields of a preset that decide about Safe
     "aggregate", "share", "samples", "safety_distance", "closing_weight", "margin", "gate", "gate_rate", "strict_gate",
     "acceleration", "turning", "turning_range", "horizon", "interval", "sensing_range", "neighbours",
