@@ -43,6 +43,8 @@ def test_counts_of_vehicles_name_their_conditions(tmp_path: Path) -> None:
         ("missions: [{from: park1e_0}]", "missions.0.to: "),
         ("seeds: [1, x]", "seeds.1: "),
         ("seeds: [1, 1]", "1 stands there twice"),
+        ("seeds: 0..100000", "100,001 seeds; at most 100,000"),
+        ("seeds: 5..3", "seeds: "),
         ("algorithms: []", "algorithms: "),
         ("algorithms: [best]", "'best'"),
         ("maps: nowhere", "nowhere"),

@@ -136,11 +136,9 @@ def _routes(map_: str, missions: Iterable[str | Route]) -> list[Route]:
         elif mission == "paper" and map_ in PAPER_MISSIONS:
             found.append(Route(PAPER_MISSIONS[map_].start, PAPER_MISSIONS[map_].goal))
         else:
-            raise RequestError(f"no mission {mission!r} on {map_}: {_CHOICES} {', '.join(PAPER_MISSIONS)})")
+            choices = f"random:N, places (from, to, via), or paper (on {', '.join(PAPER_MISSIONS)})"
+            raise RequestError(f"no mission {mission!r} on {map_}: give {choices}")
     return found
-
-
-_CHOICES = "give random:N, places (from, to, via) or paper (on"
 
 
 def _random_route(network: RoadNetwork, number: int) -> Route:

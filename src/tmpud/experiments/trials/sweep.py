@@ -27,7 +27,10 @@ def _list(value: Any) -> Any:
 def _seeds(value: Any) -> Any:
     """Let "0..199" stand for the numbers from the first to the last."""
     if isinstance(value, str) and (found := _RANGE.fullmatch(value)):
-        return list(range(int(found[1]), min(int(found[2]) + 1, int(found[1]) + MOST_SEEDS)))
+        seeds = range(int(found[1]), int(found[2]) + 1)
+        if len(seeds) > MOST_SEEDS:
+            raise ValueError(f"{value} are {len(seeds):,} seeds; at most {MOST_SEEDS:,} can be swept")
+        return list(seeds)
     return _list(value)
 
 
@@ -55,7 +58,7 @@ Several = [BeforeValidator(_list), Field(min_length=1), AfterValidator(_differen
 
 
 class _File(BaseModel):
-    """The keys of a sweep file; the defaults are Table I's."""
+    """The keys of a sweep file, each with what it is where it is left out."""
 
     model_config = ConfigDict(extra="forbid")
     maps: Annotated[list[str], *Several] = ["millbrook"]
