@@ -14,6 +14,7 @@ from tmpud.experiments.calibration.foresight import Check, checks
 from tmpud.experiments.calibration.predictions import measured
 from tmpud.experiments.kinds import Findings, findings
 from tmpud.experiments.reports.document import write_report
+from tmpud.experiments.reports.table import interval
 from tmpud.experiments.running.campaign import run_campaign
 from tmpud.experiments.running.manifest import Experiment
 from tmpud.experiments.running.progress import Progress
@@ -70,7 +71,7 @@ def keep_calibration(folder: Path) -> list[Figure]:
     faults = sum(record.status != DONE for record in done)
     foretold = [check for check in checks(done, read_world()) if check.foretold is not None]
     areas = [
-        f"{merges.source} {quality.area.value:.3f} [{quality.area.low:.3f}, {quality.area.high:.3f}]"
+        f"{merges.source} {interval(quality.area, 3)}"
         for merges, qualities in measured(done)
         for quality in qualities
         if quality.score == "tmpud"
@@ -98,9 +99,8 @@ def keep_calibration(folder: Path) -> list[Figure]:
 
 def _off(check: Check) -> str:
     off = "" if check.holds else f", off by {check.off:+.3f}"
-    seen = f"{check.seen.value:.3f} [{check.seen.low:.3f}, {check.seen.high:.3f}]"
     at_gaps = f" ({check.at_gaps:.3f} at the town's gaps)" if check.at_gaps is not None else ""
-    return f"with {check.neighbours} around: {check.foretold:.3f}{at_gaps} against {seen}{off}"
+    return f"with {check.neighbours} around: {check.foretold:.3f}{at_gaps} against {interval(check.seen, 3)}{off}"
 
 
 def same_results(options: Options) -> list[Figure]:

@@ -14,6 +14,7 @@ from tmpud.experiments.calibration.predictions import Measured, Merges, Quality
 from tmpud.experiments.calibration.scores import BASELINES
 from tmpud.experiments.reports.charts import COLOURS, LOOK, PAPER, saved
 from tmpud.experiments.reports.document import Picture
+from tmpud.experiments.reports.table import interval
 from tmpud.experiments.statistics.intervals import wilson
 
 CAPTION = (
@@ -46,7 +47,7 @@ def _draw_roc(axes: Axes, merges: Merges, qualities: Sequence[Quality]) -> None:
     for number, quality in enumerate(qualities):
         curve = roc(merges.scores[quality.score], merges.unsafe)
         colour, line = _style(number, quality.score)
-        label = f"{quality.score}: {quality.area.value:.3f} [{quality.area.low:.3f}, {quality.area.high:.3f}]"
+        label = f"{quality.score}: {interval(quality.area, 3)}"
         axes.plot(curve.false_alarms, curve.hits, line, color=colour, linewidth=1.6, label=label)
     n, unsafe = len(merges.unsafe), int(merges.unsafe.sum())
     axes.set_title(f"{merges.source}: {n} merges, {unsafe} unsafe", loc="left", fontsize=11)

@@ -16,7 +16,7 @@ import numpy as np
 
 from tmpud.experiments.calibration.measures import Truth, isotonic
 from tmpud.experiments.calibration.scores import REACH
-from tmpud.experiments.reports.table import NOTHING, Table
+from tmpud.experiments.reports.table import NOTHING, Table, interval
 from tmpud.experiments.running.tasks import DONE, Record
 from tmpud.experiments.statistics.intervals import Estimate, wilson
 from tmpud.scene import FloatArray
@@ -107,7 +107,7 @@ def check_table(found: Iterable[Check]) -> Table:
             str(check.seen.n),
             _share(check.foretold),
             _share(check.at_gaps),
-            f"{check.seen.value:.3f} [{check.seen.low:.3f}, {check.seen.high:.3f}]",
+            interval(check.seen, 3),
             NOTHING if check.holds is None else "yes" if check.holds else "no",
             NOTHING if check.off is None else f"{check.off:+.3f}",
         )

@@ -23,6 +23,7 @@ from tmpud.experiments.calibration.measures import (
 )
 from tmpud.experiments.calibration.scores import BASELINES
 from tmpud.experiments.reports.table import NOTHING, Table
+from tmpud.experiments.reports.table import interval as interval_text
 from tmpud.experiments.running.tasks import DONE, Record
 from tmpud.experiments.statistics.intervals import Estimate
 from tmpud.scene import FloatArray
@@ -155,8 +156,8 @@ def quality_table(merges: Merges, found: Iterable[Quality]) -> Table:
     rows = tuple(
         (
             quality.score,
-            _shown(quality.area),
-            _shown(quality.lead) if quality.lead else NOTHING,
+            interval_text(quality.area, 3),
+            interval_text(quality.lead, 3) if quality.lead else NOTHING,
             NOTHING if quality.brier is None else f"{quality.brier:.3f}",
             f"{quality.recalibrated:.3f}",
             *(_refusal(refusal) for refusal in quality.refusals or (None,) * len(BETAS)),
@@ -178,9 +179,3 @@ def _refusal(refusal: Refusal | None) -> str:
         return NOTHING
     unsafe = NOTHING if math.isnan(refusal.unsafe) else f"{refusal.unsafe:.3f}"
     return f"{refusal.refused:.2f} / {unsafe}"
-
-
-def _shown(estimate: Estimate) -> str:
-    if math.isnan(estimate.value):
-        return NOTHING
-    return f"{estimate.value:.3f} [{estimate.low:.3f}, {estimate.high:.3f}]"

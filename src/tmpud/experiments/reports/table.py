@@ -96,12 +96,12 @@ def statuses_table(cells: Sequence[Cell]) -> Table:
     return Table("How the trials ended", columns, rows, ("Tool faults count neither as safe nor as unsafe.",))
 
 
-def interval(estimate: Estimate) -> str:
-    """Return "value [low, high]" to one decimal; "?" for an end that is not known."""
+def interval(estimate: Estimate, decimals: int = 1) -> str:
+    """Return "value [low, high]"; "?" for an end that is not known."""
     if math.isnan(estimate.value):
         return NOTHING
     value, low, high = (
-        f"{round(x, 1) + 0.0:.1f}" if math.isfinite(x) else "?"  # + 0.0: no minus before a zero
+        f"{round(x, decimals) + 0.0:.{decimals}f}" if math.isfinite(x) else "?"  # + 0.0: no minus before a zero
         for x in (estimate.value, estimate.low, estimate.high)
     )
     return f"{value} [{low}, {high}]"
