@@ -108,6 +108,15 @@ def test_a_folder_that_cannot_be_written_is_done_without(net: Path, tmp_path: Pa
     assert read() == read()
 
 
+def test_what_could_not_be_kept_leaves_nothing_behind(net: Path, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object) -> None:
+        raise OSError("no space left on device")
+
+    monkeypatch.setattr(Path, "replace", full)
+    assert read_cached(net, 60.0, Reader(), folder, 0).digest
+    assert list(folder.iterdir()) == []
+
+
 def test_the_user_says_where_and_whether(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.delenv("TMPUD_NO_CACHE", raising=False)
     monkeypatch.setenv("XDG_CACHE_HOME", os.fspath(tmp_path))

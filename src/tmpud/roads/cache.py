@@ -12,7 +12,7 @@ import json
 import os
 import tempfile
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import fields
 from functools import cache
 from pathlib import Path
@@ -89,13 +89,12 @@ def _no_collection() -> Iterator[None]:
 def _keep(place: Path, network: RoadNetwork) -> None:
     """Write a network into the cache, whole or not at all."""
     body = json.dumps(_rows(network), separators=(",", ":"), allow_nan=False).encode()
-    try:
+    with suppress(OSError):  # the next time it is read from the net itself
         place.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile(dir=place.parent, prefix=".", delete=False) as written:
-            written.write(json.dumps(_stamp(place.stem, body)).encode() + b"\n" + body)
-        Path(written.name).replace(place)
-    except OSError:
-        return  # the next time it is read from the net itself
+        with tempfile.TemporaryDirectory(dir=place.parent, prefix=".") as folder:
+            written = Path(folder) / place.name
+            written.write_bytes(json.dumps(_stamp(place.stem, body)).encode() + b"\n" + body)
+            written.replace(place)
 
 
 def _stamp(digest: str, body: bytes) -> dict[str, str]:
