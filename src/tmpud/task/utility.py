@@ -34,7 +34,7 @@ class Utility:
     def __init__(self, preset: Preset, cost: Cost, safe: Safe, floor: Cost) -> None:
         """Take ``floor`` for a Cost that fell below it [m]; a transition that is not in it has no floor."""
         self._preset, self._cost, self._safe, self._floor = preset, cost, safe, floor
-        self._turns = {action: _turn_cost(action, preset) for action in Action}
+        self._turns = {action: turn_cost(action, preset) for action in Action}
         self._penalties: dict[float, float] = {}  # by Safe
 
     def terms(self, transition: Transition) -> Terms:
@@ -65,6 +65,11 @@ def penalty(safe: float, preset: Preset) -> float:
     return preset.gamma / (1.0 + math.exp(safe - 1.0)) - constant
 
 
+def turn_cost(action: Action, preset: Preset) -> float:
+    """Return what is added for an action that is a left or right turn [m]."""
+    return preset.turn_cost if action in (Action.TURNLEFT, Action.TURNRIGHT) else 0.0
+
+
 def centimetres(metres: float, transition: Transition) -> int:
     """Round to whole centimetres; raises UtilityOverflowError for what the solver cannot hold."""
     if not 0.0 <= metres * 100.0 < LIMIT - 1:
@@ -92,7 +97,3 @@ def check_total(ranks: Mapping[Transition, int]) -> None:
     worst = split(sum(dearest.values()))[0]
     if worst >= LIMIT:
         raise UtilityOverflowError(f"a plan could cost {worst / 100} m: a plan's cost lies below {LIMIT // 100} m")
-
-
-def _turn_cost(action: Action, preset: Preset) -> float:
-    return preset.turn_cost if action in (Action.TURNLEFT, Action.TURNRIGHT) else 0.0

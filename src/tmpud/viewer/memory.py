@@ -9,10 +9,8 @@ from typing import Any
 
 from tmpud.events import Estimated, Planned
 from tmpud.presets import Preset
-from tmpud.symbols import Action, TaskPlan, Transition
-from tmpud.task.utility import penalty
-
-TURNS = (Action.TURNLEFT, Action.TURNRIGHT)
+from tmpud.symbols import TaskPlan, Transition
+from tmpud.task.utility import penalty, turn_cost
 
 
 def preset_of(settings: Mapping[str, Any]) -> Preset:
@@ -49,7 +47,7 @@ class Memory:
 
     def turns(self, plan: Iterable[Transition]) -> float:
         """Return what is added for a plan's turns [m]."""
-        return self.preset.turn_cost * sum(step.action in TURNS for step in plan)
+        return math.fsum(turn_cost(step.action, self.preset) for step in plan)
 
     def length(self, plan: TaskPlan, done: TaskPlan = ()) -> float | None:
         """Return a plan's Cost [m], None where it is not known; the plan may be one that began with ``done``."""
