@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 
 from tmpud.errors import RunFileError
 from tmpud.experiments.running.tasks import TOOL_FAULTS
-from tmpud.experiments.statistics.intervals import BoolArray, FloatArray
+from tmpud.experiments.statistics.intervals import BoolArray
 from tmpud.experiments.statistics.rows import TrialRow
+from tmpud.scene import FloatArray
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
