@@ -5,13 +5,11 @@ python -m tools.screenshots [RUN]
 
 from __future__ import annotations
 
-import shutil
 import sys
 import tempfile
 from pathlib import Path
 
-from playwright.sync_api import sync_playwright
-
+from tests.viewer.browsing import opened
 from tmpud.viewer.replay import write_replay
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -21,22 +19,18 @@ IMAGES = ROOT / "docs" / "images"
 def main() -> None:
     """Open the replay of a run (runs/demo unless another is named) and take two pictures."""
     run = Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "runs" / "demo"
-    file = Path(tempfile.mkdtemp()) / "replay.html"
-    write_replay(run, file)
-    with sync_playwright() as browsers:
-        browser = browsers.chromium.launch(executable_path=shutil.which("chromium"))
-        page = browser.new_page(viewport={"width": 1360, "height": 860})
-        page.goto(file.as_uri())
-        page.wait_for_selector("html[data-ready=yes]", state="attached")
-        page.click(".changes li:last-child .change")
-        page.wait_for_timeout(500)
-        page.screenshot(path=IMAGES / "replay.png")
-        page.keyboard.press("w")
-        page.click("[aria-label='Light or dark']")
-        page.locator(".changes li:last-child .why figure").scroll_into_view_if_needed()
-        page.wait_for_timeout(500)
-        page.screenshot(path=IMAGES / "replay-plans.png")
-        browser.close()
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "replay.html"
+        write_replay(run, file)
+        with opened(file) as page:
+            page.click(".changes li:last-child .change")
+            page.wait_for_timeout(500)
+            page.screenshot(path=IMAGES / "replay.png")
+            page.keyboard.press("w")
+            page.click("[aria-label='Light or dark']")
+            page.locator(".changes li:last-child .why figure").scroll_into_view_if_needed()
+            page.wait_for_timeout(500)
+            page.screenshot(path=IMAGES / "replay-plans.png")
     print(f"wrote replay.png and replay-plans.png to {IMAGES}")
 
 

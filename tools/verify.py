@@ -63,8 +63,11 @@ USED = {
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    asked = _parser().parse_args(arguments)
+    parser = _parser()
+    asked = parser.parse_args(arguments)
     names = asked.sections or list(SECTIONS)
+    if unknown := [name for name in names if name not in SECTIONS]:
+        parser.error(f"no section is called {unknown[0]}; there are {', '.join(SECTIONS)}")
     options = Options(
         given_maps=tuple(str(Path(file).resolve()) for file in asked.map),
         **{name: getattr(asked, name) for name in _counts()},

@@ -7,7 +7,7 @@ import pytest
 
 from tools.verification.figures import ROOT, Figure, keep, none_in, provenance, section, table
 from tools.verification.trials import drive, each
-from tools.verify import main
+from tools.verify import SECTIONS, main
 
 FIGURE = Figure("a thing", 7, "0 of 7 | none", "0", holds=True, seed=1)
 
@@ -21,15 +21,25 @@ def test_a_section_that_is_run_alone_keeps_the_others(tmp_path: Path) -> None:
     assert {"date", "commit", "versions"} <= set(written["estimates"])
 
 
-def test_a_missed_target_is_shown_and_gives_exit_code_1(tmp_path: Path) -> None:
+def test_a_missed_target_is_shown_and_gives_exit_code_1(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     missed = Figure("a thing", 7, "3 wrong", "0 wrong", holds=False, seed=1)
-    keep(tmp_path, "old", section(provenance("some command"), [missed], 1.0))
+    monkeypatch.setitem(SECTIONS, "nets", lambda _: [missed])
+    assert main(["nets", "--output", str(tmp_path)]) == 1
     assert "| 3 wrong | 0 wrong | **no** |" in (tmp_path / "verification.md").read_text()
 
 
 def test_the_plans_section_compares_planners(tmp_path: Path) -> None:
     assert main(["plans", "--graphs", "3", "--output", str(tmp_path)]) == 0
     assert "| 3 | 1 | 0 of 9 (rate below 0.33) mismatches;" in (tmp_path / "verification.md").read_text()
+
+
+def test_a_section_that_is_not_there_is_refused_before_anything_runs(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit):
+        main(["estimates", "plan", "--output", str(tmp_path)])
+    assert "no section is called plan; there are plans, estimates" in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_no_figure_is_zero_without_its_n() -> None:
