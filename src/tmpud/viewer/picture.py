@@ -10,8 +10,9 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.figure import Figure
+from matplotlib.patheffects import withStroke
 
-from tmpud.events import Estimated, Event, Executed, Finished, Frame, Header, Judged, Planned
+from tmpud.events import Estimated, Event, Executed, Finished, Frame, Header, Judged, Planned, Refused
 from tmpud.geometry import Point, Polyline, Pose
 from tmpud.motion.mapping import StateMapping
 from tmpud.roads.network import RoadNetwork
@@ -19,12 +20,13 @@ from tmpud.story import plan_name
 from tmpud.symbols import State
 from tmpud.viewer.paths import mapping_of, plan_outline
 
-LOW = 0.5  # estimates below this are marked
+LOW = 0.5  # estimates below this are marked, and those that led to another plan
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")  # told apart by the colour-blind
 ROAD, JUNCTION, MARKING, DRIVEN = "#c9ccd1", "#bfc3c9", "#ffffff", "#1a1a1a"
 CAR, RISK = "#6b7280", "#c00000"
 MOST_PLANS = 5  # drawn
 ZOOM = 45.0  # [m] either side of the ego
+MOMENTS = 2  # shown close by
 
 
 def draw_run(network: RoadNetwork, events: Iterable[Event], file: Path) -> None:
@@ -34,10 +36,11 @@ def draw_run(network: RoadNetwork, events: Iterable[Event], file: Path) -> None:
     mapping = mapping_of(network, header)
     figure = Figure(figsize=(13, 8.5), layout="constrained")
     FigureCanvasAgg(figure)
-    grid = figure.add_gridspec(2, 2, width_ratios=(3, 2))
-    town, why = figure.add_subplot(grid[:, 0]), figure.add_subplot(grid[1, 1])
+    grid = figure.add_gridspec(1 + MOMENTS, 2, width_ratios=(3, 2))
+    town = figure.add_subplot(grid[:, 0])
+    moments = {figure.add_subplot(grid[row, 1]): low for row, low in enumerate(_low(log)[:MOMENTS], 1)}
     plans = [event for event in log if isinstance(event, Planned)]
-    for axes in (town, why):
+    for axes in (town, *moments):
         draw_network(axes, network)
         for number, planned in enumerate(plans[:MOST_PLANS]):
             _draw_plan(axes, plan_outline(network, mapping, planned.plan), planned, number)
@@ -45,7 +48,8 @@ def draw_run(network: RoadNetwork, events: Iterable[Event], file: Path) -> None:
     _draw_estimates(town, log)
     _draw_ends(town, mapping, plans)
     _draw_scale(town, 100)
-    _draw_moment(why, log)
+    for axes, low in moments.items():
+        _draw_moment(axes, low, log)
     figure.suptitle(_title(header, log), x=0.01, ha="left", fontsize=12)
     handles, labels = town.get_legend_handles_labels()
     if handles:
@@ -79,8 +83,8 @@ def _draw_plan(axes: Axes, points: list[Point], planned: Planned, number: int) -
         return
     label = f"plan {plan_name(number)}: {planned.cost_m:.0f} m + {planned.penalty_m:.0f} m penalty"
     x, y = zip(*points, strict=True)
-    width = 7.0 - 1.2 * number  # later plans are thinner, so that the ones below them stay visible
-    axes.plot(x, y, color=COLOURS[number], linewidth=width, alpha=0.75, solid_capstyle="round", label=label, zorder=3)
+    width = 9.0 - 1.7 * number  # later plans are thinner, so that the ones below them stay visible
+    axes.plot(x, y, color=COLOURS[number], linewidth=width, solid_capstyle="round", label=label, zorder=3)
 
 
 def _draw_driven(axes: Axes, log: list[Event]) -> None:
@@ -90,14 +94,24 @@ def _draw_driven(axes: Axes, log: list[Event]) -> None:
         axes.plot(x, y, color=DRIVEN, linewidth=1.2, label="driven", zorder=5)
 
 
+def _low(log: list[Event]) -> list[Estimated]:
+    """Return the estimates that were low, or low enough for another plan."""
+    refused = {(event.time, event.step) for event in log if isinstance(event, Refused)}
+    estimates = (event for event in log if isinstance(event, Estimated) and event.trajectory)
+    return [event for event in estimates if event.safe < LOW or (event.time, event.step) in refused]
+
+
 def _draw_estimates(axes: Axes, log: list[Event]) -> None:
-    low = [event for event in log if isinstance(event, Estimated) and event.safe < LOW and event.trajectory]
+    low = _low(log)
     if low:
         x, y = [e.trajectory[0][1] for e in low], [e.trajectory[0][2] for e in low]
         axes.scatter(x, y, s=160, facecolors="none", edgecolors=RISK, linewidths=2, label="Safe was low", zorder=6)
         for event, ex, ey in zip(low, x, y, strict=True):
             text = f"{event.step.action}: Safe {event.safe:.2f}"
-            axes.annotate(text, (ex, ey), xytext=(8, 10), textcoords="offset points", fontsize=8, color=RISK, zorder=7)
+            note = axes.annotate(
+                text, (ex, ey), xytext=(8, 10), textcoords="offset points", fontsize=8, color=RISK, zorder=7
+            )
+            note.set_path_effects([withStroke(linewidth=3, foreground="white")])  # it may lie upon a plan
     judged = [event for event in log if isinstance(event, Judged) and event.kind in ("collision", "forced_stop")]
     where = {event.time: event.ego for event in log if isinstance(event, Frame)}
     spots = [where[min(where, key=lambda t: abs(t - event.time))] for event in judged] if where else []
@@ -126,11 +140,10 @@ def _draw_scale(axes: Axes, length: float) -> None:
     axes.annotate(label, (x + length / 2, y), xytext=(0, 4), textcoords="offset points", ha="center", fontsize=9)
 
 
-def _draw_moment(axes: Axes, log: list[Event]) -> None:
-    """Zoom in on the first estimate that was low: the ego, the cars around it, and the one that is the risk."""
-    low = next((e for e in log if isinstance(e, Estimated) and e.safe < LOW), None)
-    frame = next((e for e in log if isinstance(e, Frame) and low and e.time >= low.time), None)
-    if low is None or frame is None:
+def _draw_moment(axes: Axes, low: Estimated, log: list[Event]) -> None:
+    """Zoom in on an estimate that was low: the ego, the cars around it, and the one that is the risk."""
+    frame = next((e for e in log if isinstance(e, Frame) and e.time >= low.time), None)
+    if frame is None:
         axes.set_visible(False)
         return
     cars = dict(zip(frame.ids, frame.others, strict=True))
@@ -142,7 +155,7 @@ def _draw_moment(axes: Axes, log: list[Event]) -> None:
     axes.set_xlim(x - ZOOM, x + ZOOM)
     axes.set_ylim(y - ZOOM / 2, y + ZOOM / 2)
     _draw_scale(axes, 10)
-    what = f"{low.time:.1f} s: {low.step.action} would be unsafe, Safe = {low.safe:.2f}"
+    what = f"{low.time:.1f} s: Safe({low.step.action}) = {low.safe:.2f}"
     axes.set_title(f"{what}\nego black, nearest risk {low.worst} red", loc="left", fontsize=10)
 
 
