@@ -53,7 +53,7 @@ def read_run(folder: str | Path) -> Iterator[Event]:
                 event = from_json(json.loads(line))
                 read += 1
                 yield event
-    except FileNotFoundError as error:
+    except (FileNotFoundError, NotADirectoryError) as error:
         raise RunFileError(f"{path}: no such run; a run folder holds {LOG}") from error
     except (OSError, EOFError, ValueError, zlib.error, RunFileError) as error:
         raise RunFileError(f"{path}:{read + 1}: {error}") from error

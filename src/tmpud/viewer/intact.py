@@ -34,7 +34,8 @@ def read_intact(folder: Path) -> Intact:
     lines = _events(folder / LOG, damaged)
     header = next(lines, None)
     if not isinstance(header, Header):
-        raise RunFileError(f"{folder / LOG}:1: no header, so it cannot be told what was run" + "".join(damaged[:1]))
+        why = f"; damaged: {damaged[0]}" if damaged else ""
+        raise RunFileError(f"{folder / LOG}:1: no header, so it cannot be told what was run{why}")
     run = Intact(header)
     for event in lines:
         if isinstance(event, Frame):
@@ -63,7 +64,7 @@ def _events(path: Path, damaged: list[str]) -> Iterator[Event]:
                     damaged.append(f"line {number}")
                 else:
                     yield event
-    except FileNotFoundError as error:
+    except (FileNotFoundError, NotADirectoryError) as error:
         raise RunFileError(f"{path}: no such run; a run folder holds {LOG}") from error
     except (OSError, EOFError, zlib.error) as error:
         damaged.append(f"everything after line {number} ({error})")

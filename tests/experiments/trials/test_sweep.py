@@ -37,7 +37,7 @@ def test_counts_of_vehicles_name_their_conditions(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("seed: 3", "seed: Extra inputs are not permitted; keys are maps, missions"),
+        ("seed: 3", "seed: no such key; keys are maps, missions"),
         ("traffic: {heavy: many}", "traffic.heavy: "),
         ("traffic: {heavy: -1}", "traffic.heavy: "),
         ("missions: [{from: park1e_0}]", "missions.0.to: "),

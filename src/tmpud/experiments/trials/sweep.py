@@ -77,7 +77,9 @@ def read_sweep(file: Path) -> Grid:
         mark = getattr(error, "problem_mark", None)
         line = f":{mark.line + 1}" if mark else ""
         raise RequestError(f"{file}{line}: {getattr(error, 'problem', None) or 'not YAML'}") from error
-    except (OSError, UnicodeDecodeError) as error:
+    except OSError as error:
+        raise RequestError(f"{file}: cannot be read: {error.strerror}") from error
+    except UnicodeDecodeError as error:
         raise RequestError(f"{file}: cannot be read as text: {error}") from error
     grid = _grid(file, content)
     try:
@@ -91,9 +93,9 @@ def _worst(error: ValidationError) -> str:
     """Return the error that lies deepest, with the path of its key; a union's members are not part of the path."""
     worst = max(error.errors(), key=lambda row: len(row["loc"]))
     path = ".".join(str(part) for part in worst["loc"] if part not in ("str", _Places.__name__))
-    top = worst["type"] == "extra_forbidden" and len(worst["loc"]) == 1
-    hint = f"; keys are {', '.join(_File.model_fields)}" if top else ""
-    return f"{path}: {worst['msg']}{hint}"
+    unknown = worst["type"] == "extra_forbidden"
+    hint = f"; keys are {', '.join(_File.model_fields)}" if unknown and len(worst["loc"]) == 1 else ""
+    return f"{path}: {'no such key' if unknown else worst['msg']}{hint}"
 
 
 def _grid(file: Path, content: Any) -> Grid:
