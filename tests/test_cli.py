@@ -173,6 +173,13 @@ def test_map_info_in_words_has_a_line_for_each_fact(tmpud: Tmpud) -> None:
     assert len(tmpud("map", "info").out.splitlines()) == len(facts)
 
 
+def test_the_edges_of_a_map_and_their_lanes_can_be_listed(tmpud: Tmpud) -> None:
+    edges, told = tmpud("map", "info", "--edges", "--json").json, tmpud("map", "info", "--edges").out
+    assert any(START in lanes for lanes in edges.values())
+    assert GOAL in edges
+    assert [line.split()[0] for line in told.splitlines()] == list(edges)
+
+
 def test_plain_clingo_finds_the_same_optimum_in_what_asp_dump_writes(tmpud: Tmpud, tmp_path: Path) -> None:
     plan = tmpud("plan", *MISSION, "--json").json
     assert tmpud("asp", "dump", *MISSION, "--out", "program").code == 0
@@ -219,12 +226,24 @@ def test_what_the_map_does_not_have_is_one_line(
     ("words", "said"),
     [
         (("--algorithm", "fastest"), "no algorithm is called 'fastest'; there are tmpud, no-com, threshold"),
+        (("--preset", "tmpud:gama=1500"), "gama"),
         (("--out", "Bad Name"), "'Bad Name' is no name for a run"),
         (("--out", "runs/../Up"), "'Up' is no name for a run"),
     ],
 )
 def test_drive_refuses_what_it_does_not_know(tmpud: Tmpud, words: tuple[str, ...], said: str) -> None:
     assert said in tmpud("drive", *MISSION, *words).refusal
+
+
+def test_a_preset_with_a_change_names_its_run_folder(tmpud: Tmpud, tmp_path: Path) -> None:
+    words = ("--from", "park2e_0", "--to", "park2e_0", "--traffic", "0", "--no-frames", "--preset", "tmpud:gamma=1500")
+    assert tmpud("drive", *words).code == 0
+    assert [folder.name for folder in (tmp_path / "runs").iterdir()] == ["millbrook-tmpud-gamma-1500-tmpud-7"]
+
+
+def test_a_folder_that_cannot_be_made_is_named(tmpud: Tmpud, tmp_path: Path) -> None:
+    (tmp_path / "letter.txt").write_text("in the way", encoding="utf-8")
+    assert tmpud("asp", "dump", *MISSION, "--out", "letter.txt").refusal == "letter.txt: File exists"
 
 
 @pytest.mark.parametrize(
@@ -402,7 +421,9 @@ def test_a_replay_is_written_beside_its_run_or_where_it_is_wanted(tmp_path: Path
     assert wanted.read_bytes() == (folder / "replay.html").read_bytes()
 
 
-def test_a_replay_of_no_run_is_refused(tmp_path: Path, tmpud: Tmpud) -> None:
-    result = tmpud("replay", str(tmp_path))
+@pytest.mark.parametrize("given", [".", "letter.txt"])
+def test_a_replay_of_no_run_is_refused(tmp_path: Path, tmpud: Tmpud, given: str) -> None:
+    (tmp_path / "letter.txt").write_text("no run", encoding="utf-8")
+    result = tmpud("replay", given)
     assert (result.code, result.out) == (4, "")
     assert "no such run" in result.err

@@ -66,7 +66,7 @@ def main() -> None:
         if type(error).__name__ == "NoArgsIsHelpError":
             error.show()  # type: ignore[attr-defined]
             sys.exit(code)
-        _fail(error.format_message() if hasattr(error, "format_message") else str(error), code)
+        _fail(_message(error), code)
 
 
 def _exit_code(error: Exception) -> int:
@@ -76,6 +76,13 @@ def _exit_code(error: Exception) -> int:
     if type(error).__name__ == "Abort":
         return INTERRUPTED
     return 2 if isinstance(error, OSError) or hasattr(error, "format_message") else 0
+
+
+def _message(error: Exception) -> str:
+    """Return an error in one line: of the system's, which file and what about it."""
+    if isinstance(error, OSError) and error.filename is not None:
+        return f"{error.filename}: {error.strerror}"
+    return error.format_message() if hasattr(error, "format_message") else str(error)
 
 
 def _fail(message: str, code: int) -> NoReturn:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -20,7 +21,7 @@ DEMO_SEED, DEMO_TRAFFIC = 16, 200
 
 @app.command()
 def demo(seed: Seed = DEMO_SEED, out: Out = None) -> None:
-    """Drive the shipped town's paper mission in traffic and tell the story."""
+    """Drive the paper's mission in dense traffic. Tells the story as it goes and writes a run folder."""
     from tmpud.roads.towns import PAPER_MISSIONS
     from tmpud.runner import Mission
 
@@ -37,10 +38,10 @@ def drive(
     beta: Beta = 0.3,
     traffic: Traffic = 120,
     out: Out = None,
-    frames: Annotated[bool, typer.Option(help="Record what can be seen, ten times a second.")] = True,
+    frames: Annotated[bool, typer.Option(help="Record all traffic ten times a second, for the replay.")] = True,
     as_json: Json = False,
 ) -> None:
-    """Drive a service request in SUMO's traffic, judge it, and write a run folder."""
+    """Drive one mission in SUMO's traffic. The run is judged and written into a folder."""
     from tmpud.runner import Mission
 
     mission = Mission(
@@ -54,8 +55,14 @@ def drive(
         seed=journey.seed,
         preset=journey.preset,
     )
-    name = f"{Path(journey.map).name.split('.')[0]}-{journey.preset}-{algorithm}-{journey.seed}".lower()
-    _drive(mission, out or Path("runs") / name, as_json=as_json, frames=frames)
+    _drive(mission, out or Path("runs") / _name(mission), as_json=as_json, frames=frames)
+
+
+def _name(mission: Mission) -> str:
+    """Return what a mission's run folder is called where its user does not say."""
+    town = Path(mission.map).name.split(".")[0]
+    words = f"{town}-{mission.preset}-{mission.algorithm}-{mission.seed}".lower()
+    return re.sub("[^a-z0-9._]+", "-", words)[-64:].lstrip("._-")
 
 
 def _drive(mission: Mission, folder: Path, *, as_json: bool, frames: bool = True) -> None:

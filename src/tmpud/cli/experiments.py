@@ -23,6 +23,7 @@ paper_app = typer.Typer(help="Repeat the paper's experiments.", no_args_is_help=
 app.add_typer(paper_app, name="paper")
 
 SWEEP = """\
+maps: [millbrook]
 missions: [paper, "random:5", {from: park1e_0, to: high4n}]
 traffic: {normal: 120, heavy: 200}
 algorithms: [tmpud, threshold(0.3), no-com]
@@ -35,12 +36,12 @@ seeds: 0..19
 @grouped
 def table1(
     *,
-    trials: Annotated[int, typer.Option(min=1, max=100_000, help="Per algorithm and density.")] = 200,
+    trials: Annotated[int, typer.Option(min=1, max=100_000, help="Trials per algorithm and density.")] = 200,
     setting: Setting,
     first_seed: Annotated[int, typer.Option(min=0, help="Seed of the first trial.")] = 1000,
     running: Running,
 ) -> None:
-    """Drive Table I in full simulation: five algorithms, normal and heavy traffic, paired seeds."""
+    """Repeat Table I in full simulation. Five algorithms, normal and heavy traffic, paired seeds."""
     from tmpud.experiments.trials.grid import cells
     from tmpud.experiments.trials.table1 import Table1
 
@@ -52,14 +53,14 @@ def table1(
 @grouped
 def figure4(
     *,
-    trials: Annotated[int, typer.Option(min=1, max=1_000_000, help="Per algorithm and road condition.")] = 4000,
-    batches: Annotated[int, typer.Option(min=1, max=1000, help="The trials are split into so many.")] = 4,
+    trials: Annotated[int, typer.Option(min=1, max=1_000_000, help="Trials per algorithm and road condition.")] = 4000,
+    batches: Annotated[int, typer.Option(min=1, max=1000, help="How many shares the trials are split into.")] = 4,
     setting: Setting,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the draws.")] = 1000,
     world: Annotated[Path | None, typer.Option(help="What learn-world wrote; default: the shipped models.")] = None,
     running: Running,
 ) -> None:
-    """Draw the paper's figure in abstract simulation: five algorithms under four road conditions."""
+    """Repeat the paper's figure in abstract simulation. Five algorithms under four road conditions."""
     from tmpud.experiments.trials.figure4 import Figure4
     from tmpud.experiments.worlds.models import SHIPPED
 
@@ -72,13 +73,15 @@ def figure4(
 @grouped
 def calibration(
     *,
-    merges: Annotated[int, typer.Option(min=0, max=100_000, help="Local ones, for each road condition.")] = 400,
-    drives: Annotated[int, typer.Option(min=0, max=100_000, help="In the town, for each density.")] = 60,
+    merges: Annotated[
+        int, typer.Option(min=0, max=100_000, help="Merges in a small area, for each road condition.")
+    ] = 400,
+    drives: Annotated[int, typer.Option(min=0, max=100_000, help="Drives through the town, for each density.")] = 60,
     first_seed: Annotated[int, typer.Option(min=0, help="Seed of the first drive.")] = 60_000,
     map_: Map = TOWN,
     running: Running,
 ) -> None:
-    """Measure how well Safe foretells an unsafe merge, beside gap, time to collision and RSS distance."""
+    """Measure how well Safe foretells an unsafe merge. Beside it: gap, time to collision and RSS distance."""
     from tmpud.experiments.calibration.foresight import check_table, checks
     from tmpud.experiments.calibration.predictions import measured, quality_table, to_json
     from tmpud.experiments.calibration.report import calibration_report, calibration_tasks
@@ -107,7 +110,7 @@ def learn_world(
     jobs: Jobs = 2,
     out: Annotated[Path, typer.Option(help="The file to write; FILE.runs keeps what was run.")] = Path("world.json"),
 ) -> None:
-    """Learn the abstract simulation's world models by forcing merges in a small area of the full simulator."""
+    """Learn the abstract simulation's models. Forces merges in a small area of the full simulator."""
     from datetime import UTC, datetime
 
     from tmpud.experiments.worlds.learning import tasks, to_json, world
@@ -129,7 +132,7 @@ def sweep(
     file: Annotated[Path, typer.Argument(metavar="FILE.yaml", help="What is driven, as below.")],
     running: Running,
 ) -> None:
-    """Drive any grid of maps, missions, densities, algorithms, presets and seeds."""
+    """Drive any grid of missions and settings. A file says which; its trials are driven, counted and compared."""
     from tmpud.experiments.trials.grid import cells
     from tmpud.experiments.trials.sweep import read_sweep
 
@@ -144,7 +147,7 @@ def results(
     export: Annotated[Path | None, typer.Option(metavar="FILE", help="A .csv, .json or .parquet to write.")] = None,
     as_json: Json = False,
 ) -> None:
-    """Print an experiment's results, export its trials, or compare two runs trial by trial."""
+    """Print, export or compare an experiment's results. Comparison goes trial by trial."""
     from tmpud.experiments.kinds import findings
     from tmpud.experiments.reports.export import write_rows
     from tmpud.experiments.running.store import read_results

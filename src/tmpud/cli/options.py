@@ -22,11 +22,11 @@ def _number(value: float) -> float:
     return value
 
 
-Map = Annotated[str, typer.Option("--map", "-m", help="A shipped town's name or a .net.xml(.gz) file.")]
+Map = Annotated[str, typer.Option("--map", "-m", help="A shipped town's name (millbrook) or a .net.xml(.gz) file.")]
 From = Annotated[str, typer.Option("--from", help="Start: a lane or edge id, x,y in map coordinates, or random.")]
 To = Annotated[str, typer.Option("--to", help="Goal, like --from.")]
 Via = Annotated[list[str] | None, typer.Option("--via", help="A place on the way; repeat for more, in their order.")]
-Seed = Annotated[int, typer.Option(min=0, help="Seed of random places, traffic and sampling.")]
+Seed = Annotated[int, typer.Option(min=0, help="Seed of all that is random.")]
 Preset = Annotated[
     str,
     typer.Option(
@@ -34,11 +34,18 @@ Preset = Annotated[
     ),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")]
-Out = Annotated[Path | None, typer.Option(help="The run folder to write; default: runs/<name>.")]
+Out = Annotated[
+    Path | None, typer.Option(help="The run folder to write; a run already there is replaced. Default: runs/<name>.")
+]
 Traffic = Annotated[int, typer.Option(min=0, help="How many other vehicles circulate.")]
-Algorithm = Annotated[str, typer.Option(help="tmpud, no-com or threshold.")]
+Algorithm = Annotated[
+    str,
+    typer.Option(
+        help="tmpud weighs Safe against distance, threshold refuses actions below --beta, no-com ignores Safe."
+    ),
+]
 Beta = Annotated[float, typer.Option(min=0.0, max=1.0, callback=_number, help="The least Safe that threshold accepts.")]
-Missions = Annotated[str, typer.Option(help="paper, or random:N, over which the trials are spread.")]
+Missions = Annotated[str, typer.Option(help="paper, or random:N: N random missions over which the trials are spread.")]
 Jobs = Annotated[int, typer.Option(min=1, max=256, help="Worker processes; they never change a result.")]
 Folder = Annotated[
     Path | None,

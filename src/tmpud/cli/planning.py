@@ -13,6 +13,7 @@ from tmpud.cli.options import TOWN, Journey, Json, grouped
 
 if TYPE_CHECKING:
     from tmpud.planning import Problem
+    from tmpud.roads.network import RoadNetwork
     from tmpud.task.asp_planner import PlanReport
 
 app = typer.Typer()
@@ -34,7 +35,7 @@ def plan(
     ] = False,
     as_json: Json = False,
 ) -> None:
-    """Print the optimal task plan, proved by the solver; no simulator runs."""
+    """Print the optimal task plan. The solver proves it; no simulator runs."""
     problem = _problem(journey)
     report = (problem.with_rules(rules) if rules else problem).solve()
     effort = _effort(report) if verbose else {}
@@ -75,14 +76,25 @@ def _effort(report: PlanReport) -> dict[str, Any]:
 
 
 @map_app.command("info")
-def map_info(map_: Annotated[str, typer.Argument(metavar="MAP")] = TOWN, as_json: Json = False) -> None:
-    """Print what a map offers: segments, lanes, junctions, signals, transitions by action, warnings."""
+def map_info(
+    map_: Annotated[str, typer.Argument(metavar="MAP", help="A shipped town's name or a .net.xml(.gz) file.")] = TOWN,
+    *,
+    edges: Annotated[
+        bool, typer.Option("--edges", help="List the edges and their lanes, which --from and --to take.")
+    ] = False,
+    as_json: Json = False,
+) -> None:
+    """Print what a map has. Counts segments, lanes, junctions, signals, transitions by action; lists warnings."""
     from dataclasses import asdict
 
     from tmpud.roads.loading import load_map
     from tmpud.roads.survey import survey
 
-    facts: dict[str, Any] = asdict(survey(load_map(map_)))
+    network = load_map(map_)
+    if edges:
+        _list_edges(network, as_json=as_json)
+        return
+    facts: dict[str, Any] = asdict(survey(network))
     if as_json:
         typer.echo(json.dumps(facts))
         return
@@ -95,13 +107,22 @@ def map_info(map_: Annotated[str, typer.Argument(metavar="MAP")] = TOWN, as_json
         typer.echo(f"{name.replace('_', ' '):<20}{shown}")
 
 
+def _list_edges(network: RoadNetwork, *, as_json: bool) -> None:
+    named = dict(sorted(network.edges.items()))
+    if as_json:
+        typer.echo(json.dumps(named))
+        return
+    for name, lanes in named.items():
+        typer.echo(f"{name:<20}{', '.join(lanes)}")
+
+
 @asp_app.command("dump")
 @grouped
 def asp_dump(
     journey: Journey,
     out: Annotated[Path, typer.Option(help="The folder to write the encodings and facts.lp into.")] = Path("asp"),
 ) -> None:
-    """Write the facts of a mission beside the encodings, so that plain clingo finds the same optimum."""
+    """Write a mission's facts and the encodings. Plain clingo then finds the same optimum."""
     files = _problem(journey).dump(out)
     typer.echo(f"wrote {', '.join(file.name for file in files)} to {out}")
     typer.echo(f"try: {shlex.join(['python', '-m', 'clingo', *map(str, files)])}")

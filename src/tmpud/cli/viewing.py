@@ -15,7 +15,7 @@ def replay(
     run: Annotated[Path, typer.Argument(help="A run folder, such as runs/demo.")],
     html: Annotated[Path | None, typer.Option(help="The page to write; default: replay.html in the folder.")] = None,
 ) -> None:
-    """Write one HTML file that plays a run: open it in a browser, send it to somebody."""
+    """Write one HTML page that plays a run. Open it in a browser, send it to somebody."""
     from tmpud.viewer.replay import write_replay
 
     file = html or run / "replay.html"
