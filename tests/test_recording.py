@@ -8,7 +8,7 @@ import pytest
 from tmpud.errors import RequestError, RunFileError
 from tmpud.events import Event, Executed, Finished, Header, to_json
 from tmpud.execution.timing import Latency, Stopwatch
-from tmpud.recording import LOG, TIMING, read_run, record, record_timing
+from tmpud.recording import LOG, PICTURE, REPLAY, TIMING, read_run, record, record_timing
 from tmpud.symbols import Action, State, Transition
 
 STEP = Transition(State("a_0/0", 0), Action.FORWARD, State("a_0/1", 0))
@@ -62,6 +62,14 @@ def test_a_run_that_never_began_leaves_an_earlier_one_alone(tmp_path: Path) -> N
     with pytest.raises(RequestError):
         list(record(refused(), tmp_path / "new"))
     assert not (tmp_path / "new").exists()
+
+
+def test_nothing_made_of_an_earlier_run_stays_beside_a_new_log(tmp_path: Path) -> None:
+    folder = recorded(tmp_path / "run")
+    for name in (TIMING, PICTURE, REPLAY, "notes.txt"):
+        (folder / name).write_text("of the first run")
+    recorded(folder)
+    assert sorted(file.name for file in folder.iterdir()) == sorted([LOG, "notes.txt"])
 
 
 @pytest.mark.parametrize("name", ["Run", "run 1", "-run", ".run", "r" * 65, "ru\nn", "läuft", "..."])
