@@ -100,7 +100,11 @@ def _versions(sections: Mapping[str, Any]) -> str:
 def _commit() -> str:
     """Return the checkout's commit, marked where tracked files other than the docs have changed since."""
     commit = _git("rev-parse", "--short=10", "HEAD")
-    return commit + ("+" if _git("status", "--porcelain", "--untracked-files=no", "--", ".", ":!docs") else "") if commit else "unknown"
+    return (
+        commit + ("+" if _git("status", "--porcelain", "--untracked-files=no", "--", ".", ":!docs") else "")
+        if commit
+        else "unknown"
+    )
 
 
 def _git(*arguments: str) -> str:

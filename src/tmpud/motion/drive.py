@@ -14,6 +14,7 @@ from tmpud.motion.tracking import Tracker
 from tmpud.scene import Control, FloatArray, Scene
 
 GATES_AHEAD = 40.0  # [m] stop lines further away are not thought of yet
+ROLL = 0.1  # [s] of a step when the drive is looked at in advance
 AT_LINE = 5.0  # [m] standing this near a line is waiting at it
 
 
@@ -86,18 +87,18 @@ class Drive:
         distance = gate.station - front
         return not jammed and self._right_of_way.may_enter(scene, gate.connection, distance, self._standing)
 
-    def roll_out(self, scene: Scene, times: FloatArray, dt: float = 0.1) -> tuple[FloatArray, FloatArray]:
+    def roll_out(self, scene: Scene, times: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return stations and speeds (T,) at some times if all others keep their speed."""
         station, speed = self.station(scene), scene.ego.speed
         ahead = self._leader(scene, station)
         stop = self._stop(scene, station, ahead, 0.0)
         grid = [(0.0, station, speed)]
-        for i in range(math.ceil(float(times[-1]) / dt)):
+        for i in range(math.ceil(float(times[-1]) / ROLL)):
             moved = station - grid[0][1]
-            now = [Obstacle(o.gap + o.speed * i * dt - moved, o.speed) for o in ahead]
+            now = [Obstacle(o.gap + o.speed * i * ROLL - moved, o.speed) for o in ahead]
             wish = acceleration(self.route, station, speed, now, None if stop is None else stop - moved)
-            speed = max(speed + wish * dt, 0.0)
-            station += speed * dt
-            grid.append(((i + 1) * dt, station, speed))
+            speed = max(speed + wish * ROLL, 0.0)
+            station += speed * ROLL
+            grid.append(((i + 1) * ROLL, station, speed))
         t, s, v = np.array(grid).T
         return np.interp(times, t, s), np.interp(times, t, v)

@@ -19,6 +19,7 @@ MARGIN = 1.5  # [s] between the ego leaving a shared place and another reaching 
 FOE_SPEED = 6.0  # [m/s] that others may reach
 FOE_HORIZON = 60.0  # [m] how far up the road others are looked for
 LATE_BRAKING = 3.0  # [m/s^2] where more is needed to stop for yellow, the ego goes on
+GENTLE, CROSSING_SPEED = 1.5, 4.5  # [m/s^2], [m/s] by which the ego counts on crossing a junction
 IMPATIENCE = 120.0  # [s] after which the ego enters on any green
 PATIENCE = 4.0  # [s] after which standing vehicles are taken to be waiting for the ego
 
@@ -194,13 +195,13 @@ def _can_stop(speed: float, distance: float) -> bool:
     return speed * speed / (2 * LATE_BRAKING) < distance
 
 
-def _time_to_cover(way: float, speed: float, acceleration: float = 1.5, limit: float = 4.5) -> float:
-    """Return how long a car needs for some way when it speeds up gently [s]."""
-    top = max(limit, speed)
-    speeding_up = (top * top - speed * speed) / (2 * acceleration)
+def _time_to_cover(way: float, speed: float) -> float:
+    """Return how long the ego needs for some way when it speeds up gently [s]."""
+    top = max(CROSSING_SPEED, speed)
+    speeding_up = (top * top - speed * speed) / (2 * GENTLE)
     if way < speeding_up:
-        return (math.sqrt(speed * speed + 2 * acceleration * way) - speed) / acceleration
-    return (top - speed) / acceleration + (way - speeding_up) / top
+        return (math.sqrt(speed * speed + 2 * GENTLE * way) - speed) / GENTLE
+    return (top - speed) / GENTLE + (way - speeding_up) / top
 
 
 def _shared_place(own: Polyline, other: Polyline) -> Shared | None:

@@ -9,10 +9,8 @@ from __future__ import annotations
 import random
 import tempfile
 from collections.abc import Mapping, Sequence
-from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
 from pathlib import Path
-from types import TracebackType
 
 import numpy as np
 
@@ -25,7 +23,7 @@ from tmpud.simulators import sumo_ego
 from tmpud.simulators.cars import TYPE
 from tmpud.simulators.local_roads import APART, LANES, WIDTH, lane_name, road_name, write_net
 from tmpud.simulators.sumo import JOINT
-from tmpud.simulators.sumo_process import ending, start
+from tmpud.simulators.sumo_process import Simulation, start
 from tmpud.simulators.sumo_reader import DT, EGO_ID, SumoReader
 from tmpud.simulators.traffic import TrafficRules
 
@@ -63,7 +61,7 @@ class _Neighbour:
     factor: float = 0.0  # [m/s^2]
 
 
-class LocalRoads:
+class LocalRoads(Simulation):
     """One SUMO with ``roads`` parallel roads, each with an ego and its neighbours; a context manager.
 
     The acceleration factor is added to a neighbour's wished speed over time; its car-following model bounds what it
@@ -76,7 +74,6 @@ class LocalRoads:
         self._egos: dict[int, VehicleState] = {}
         self._origins: dict[int, int] = {}
         self._neighbours: dict[int, list[_Neighbour]] = {}
-        self._steps = 0
         self._folder = tempfile.TemporaryDirectory(prefix="tmpud-local-")
         try:
             self._sumo = start(read_sumo_net(write_net(Path(self._folder.name), roads)), seed)
@@ -122,20 +119,8 @@ class LocalRoads:
 
     def close(self) -> None:
         """End the simulation; a second call does nothing."""
-        if self._sumo.isLoaded():
-            self._sumo.close()
+        super().close()
         self._folder.cleanup()
-
-    def __enter__(self) -> LocalRoads:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
-
-    def _errors(self) -> AbstractContextManager[None]:
-        return ending(self.close, lambda: f"{self._steps} local steps")
 
     # Spawning --------------------------------------------------------------------------------------------------
 

@@ -10,9 +10,7 @@ import contextlib
 import math
 import random
 from collections.abc import Sequence
-from contextlib import AbstractContextManager
-from types import TracebackType
-from typing import Any, Self
+from typing import Any
 
 from tmpud.dynamics import EGO, VehicleLimits, step
 from tmpud.errors import SimulatorError
@@ -21,7 +19,7 @@ from tmpud.roads.network import RoadNetwork
 from tmpud.scene import Control, Scene, Vehicles, VehicleState
 from tmpud.simulators import sumo_ego
 from tmpud.simulators.cars import SENSING_RANGE, Cars, standing_at
-from tmpud.simulators.sumo_process import ending, start
+from tmpud.simulators.sumo_process import Simulation, start
 from tmpud.simulators.sumo_reader import DT, EGO_ID, SumoReader
 from tmpud.simulators.traffic import Circulation, Spot, TrafficRules
 from tmpud.symbols import ServiceRequest
@@ -34,7 +32,7 @@ NEXT_LANES = 4  # how many of the announced lanes the ego may be on within one s
 GENTLE = 2.0  # [m/s^2] braking
 
 
-class SumoSimulator:
+class SumoSimulator(Simulation):
     """One town with circulating traffic. libsumo holds one simulation per process."""
 
     collision_action = "none"  # what SUMO does where its own cars collide
@@ -60,7 +58,6 @@ class SumoSimulator:
         self._rules = rules or TrafficRules()
         self._circulation = Circulation(network, self._rng, request, self._rules)
         self._ego: VehicleState | None = None
-        self._steps = 0
         self._roads: list[str] = []  # the announced roads
         self._way: list[tuple[str, Polyline]] = []  # the announced lanes ...
         self._at = 0  # ... and on which of them the ego is
@@ -102,22 +99,6 @@ class SumoSimulator:
     def everyone(self) -> Vehicles:
         """Return all other vehicles of the town, for pictures and records."""
         return self._reader.everyone(self._steps)
-
-    def close(self) -> None:
-        """End the simulation; a second call does nothing."""
-        if self._sumo.isLoaded():
-            self._sumo.close()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
-
-    def _errors(self) -> AbstractContextManager[None]:
-        return ending(self._sumo.close, lambda: f"{self._steps} steps")
 
     # Inside ----------------------------------------------------------------------------------------------------
 

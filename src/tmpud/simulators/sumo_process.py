@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import contextlib
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
-from types import ModuleType
+from types import ModuleType, TracebackType
+from typing import Self
 
 from tmpud.errors import SimulatorError
 from tmpud.roads.network import RoadNetwork
@@ -43,12 +44,30 @@ def start(network: RoadNetwork, seed: int, collision_action: str = "none") -> Mo
     return libsumo
 
 
-@contextlib.contextmanager
-def ending(close: Callable[[], None], when: Callable[[], str]) -> Iterator[None]:
-    """Turn what libsumo raises into SimulatorError that says when it came, and end the simulation."""
-    libsumo = imported()
-    try:
-        yield
-    except (libsumo.TraCIException, libsumo.FatalTraCIError) as error:
-        close()
-        raise SimulatorError(f"SUMO failed after {when()}: {error}") from error
+class Simulation:
+    """SUMO in this process, which holds one simulation at a time; it ends with the ``with`` block."""
+
+    _sumo: ModuleType
+    _steps = 0
+
+    def close(self) -> None:
+        """End the simulation; a second call does nothing."""
+        if self._sumo.isLoaded():
+            self._sumo.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    @contextlib.contextmanager
+    def _errors(self) -> Iterator[None]:
+        """Turn what libsumo raises into SimulatorError that says when it came, and end the simulation."""
+        try:
+            yield
+        except (self._sumo.TraCIException, self._sumo.FatalTraCIError) as error:
+            self.close()
+            raise SimulatorError(f"SUMO failed after {self._steps} steps: {error}") from error
