@@ -1,9 +1,9 @@
 """What maps of a city's size cost: reading, reading again, the first plan to a goal, and replans after a Safe update.
 
-    python -m benchmarks.city --blocks 12 36 147 --starts 100
+    python -m benchmarks.city --maps grid:12:2 grid:36:2 grid:147:2 --starts 100
 
-Each map is a grid by SUMO's netgenerate, its crossings moved at random (standard deviation 10 m), two lanes each way.
-Costs are the motion planner's path lengths. Times are CPU seconds; the cache is one of its own.
+Maps are named as in the benchmark ``plan``. Costs are the motion planner's path lengths. Times are CPU seconds; the
+cache is one of its own.
 """
 
 from __future__ import annotations
@@ -11,8 +11,6 @@ from __future__ import annotations
 import argparse
 import random
 import resource
-import subprocess
-import sys
 import tempfile
 import time
 from collections.abc import Callable
@@ -22,6 +20,7 @@ from pathlib import Path
 from statistics import median
 from typing import TypeVar
 
+from benchmarks.nets import net_file
 from tmpud.errors import NoPlanError
 from tmpud.motion.mapping import StateMapping
 from tmpud.motion.path_planner import PathPlanner
@@ -37,49 +36,39 @@ T = TypeVar("T")
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--blocks", type=int, nargs="+", default=[12, 36], help="crossings along a side")
+    parser.add_argument("--maps", nargs="+", default=["grid:12:2", "grid:36:2"])
     parser.add_argument("--starts", type=int, default=100, help="random starts, with a replan from each")
     parser.add_argument("--seed", type=int, default=1)
     asked = parser.parse_args()
-    for blocks in asked.blocks:
-        with tempfile.TemporaryDirectory() as folder:
-            net = _generated(Path(folder), blocks, asked.seed)
+    for name in asked.maps:
+        with net_file(name) as net, tempfile.TemporaryDirectory() as cache:
+            _say(name)
             for stage in (_reading, _reading_again, partial(_planning, starts=asked.starts, seed=asked.seed)):
-                process = get_context("fork").Process(target=stage, args=(net,))  # each has its own peak of memory
+                # each in a process of its own, which has its own peak of memory
+                process = get_context("fork").Process(target=stage, args=(net, Path(cache)))
                 process.start()
                 process.join()
 
 
-def _generated(folder: Path, blocks: int, seed: int) -> Path:
-    net = folder / "city.net.xml"
-    program = Path(sys.executable).with_name("netgenerate")
-    size = ["--grid", "--grid.number", str(blocks), "--grid.length", "100", "--default.lanenumber", "2"]
-    moved = ["--perturb-x", "norm(0,10)", "--perturb-y", "norm(0,10)", "--seed", str(seed), "--no-turnarounds"]
-    subprocess.run([program, *size, *moved, "-o", net], check=True, capture_output=True)
-    return net
+def _load(net: Path, cache: Path) -> RoadNetwork:
+    return read_cached(net, SEGMENT_LENGTH, partial(read_sumo_net, segment_length=SEGMENT_LENGTH), cache, 0)
 
 
-def _load(net: Path) -> RoadNetwork:
-    return read_cached(
-        net, SEGMENT_LENGTH, partial(read_sumo_net, segment_length=SEGMENT_LENGTH), net.parent / "cache", 0
-    )
-
-
-def _reading(net: Path) -> None:
+def _reading(net: Path, cache: Path) -> None:
     elapsed, network = _timed(lambda: read_sumo_net(net))
-    _say(f"{len(network.lanes):,} lanes, {len(network.segments):,} segments, {net.stat().st_size / 1e6:.0f} MB")
+    _say(f"  {len(network.lanes):,} lanes, {len(network.segments):,} segments, {net.stat().st_size / 1e6:.0f} MB")
     _say(f"  reading {elapsed:.2f} s, peak memory {_peak():.0f} MB")
-    _load(net)
+    _load(net, cache)
 
 
-def _reading_again(net: Path) -> None:
-    elapsed, _ = _timed(lambda: _load(net))
+def _reading_again(net: Path, cache: Path) -> None:
+    elapsed, _ = _timed(lambda: _load(net, cache))
     _say(f"  reading it again, from the cache, {elapsed:.2f} s, peak memory {_peak():.0f} MB")
 
 
-def _planning(net: Path, starts: int, seed: int) -> None:
+def _planning(net: Path, cache: Path, starts: int, seed: int) -> None:
     rng = random.Random(seed)  # noqa: S311  repeatable, no secret
-    network = _load(net)
+    network = _load(net, cache)
     segments = sorted(network.segments)
     home, goal = rng.sample(segments, 2)
     request = ServiceRequest(Place("start", (home,)), (Place("goal", (goal,)),))
