@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import random
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 from tests.task.oracle import dijkstra, order, simple_plans, transitions, triple, weight
 from tests.task.tiny_roads import random_network
@@ -93,7 +93,6 @@ def compare(n: int, seed: int) -> Tally:
         case = random_case(random.Random(f"{seed}/{number}"))
         planners = {
             "pruned": AspPlanner(case.network, case.preset),
-            "pruned, as in a large corridor": as_in_large_corridors(AspPlanner(case.network, case.preset)),
             "whole map": AspPlanner(case.network, case.preset, prune=False),
             "search": SearchPlanner(case.network, case.preset),
         }
@@ -105,12 +104,6 @@ def compare(n: int, seed: int) -> Tally:
             case.change(state)
         tally.graphs += 1
     return tally
-
-
-def as_in_large_corridors(planner: AspPlanner) -> AspPlanner:
-    """Return the planner, which from now on writes each program as it does for a large corridor."""
-    planner._prover = replace(planner._prover, large=0)
-    return planner
 
 
 def _skipped(request: ServiceRequest, state: State) -> State:

@@ -1,4 +1,6 @@
 import random
+from collections import Counter
+from itertools import pairwise
 
 import pytest
 
@@ -8,7 +10,7 @@ from tmpud.presets import TMPUD
 from tmpud.symbols import OptimisticSafe, State
 from tmpud.task.corridor import Search, backward_tree, corridor, whole_map
 from tmpud.task.domain import Domain
-from tmpud.task.facts import encoding, facts
+from tmpud.task.facts import encoding, facts, named
 from tmpud.task.solver import ask
 from tmpud.task.utility import FORBIDDEN, Utility, split
 
@@ -29,12 +31,32 @@ def test_the_corridor_holds_every_optimal_plan_of_the_whole_map(seed: int) -> No
     domain, search = search_of(case, state)
     found, everything = corridor(search, state), whole_map(search, state)
     weights = {transition: split(rank)[0] for transition, rank in everything.ranks.items()}
-    answer = ask(encoding() + facts(domain, state, weights), weights)
+    answer = ask(encoding() + facts(domain, state, weights), named((step,) for step in weights))
     assert (found is None) == (answer.union == ())
     if found is not None:
         assert found.optimal_transitions() == set(answer.union)
         assert set(answer.union) <= set(found.ranks) <= set(everything.ranks)
         assert split(found.optimum)[0] == answer.centimetres
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_stretches_hold_each_transition_once_and_leave_every_choice_between_them(seed: int) -> None:
+    case = random_case(random.Random(seed))
+    state = State(case.request.start.segments[0], 0)
+    _, search = search_of(case, state)
+    found = corridor(search, state)
+    if found is None:
+        return
+    stretches = found.stretches(state)
+    assert sorted(step for way in stretches for step in way) == sorted(found.ranks)
+    assert all(before.next_state == after.state for way in stretches for before, after in pairwise(way))
+    inner = Counter(step.state for way in stretches for step in way[1:])
+    ways_in = Counter(step.next_state for step in found.ranks)
+    ways_out = Counter(step.state for step in found.ranks)
+    assert all(ways_in[joint] == ways_out[joint] == 1 for joint in inner)
+    assert state not in inner
+    ends = {way[0].state for way in stretches} - {state}
+    assert all(ways_in[end] != 1 or ways_out[end] != 1 for end in ends)
 
 
 @pytest.mark.parametrize("seed", range(20))

@@ -14,7 +14,7 @@ from heapq import heappop, heappush
 from tmpud.presets import Preset
 from tmpud.symbols import Cost, OptimisticSafe, State, Transition
 from tmpud.task.domain import Domain
-from tmpud.task.utility import FORBIDDEN, Utility
+from tmpud.task.utility import FORBIDDEN, Utility, split
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +39,9 @@ class Search:
     last: int  # the leg of the goal states
 
 
+Stretch = tuple[Transition, ...]  # one way from a state to another, with no choice in between
+
+
 @dataclass(frozen=True, slots=True)
 class Corridor:
     """The transitions that can lie on a best plan, and what is known about them."""
@@ -46,6 +49,32 @@ class Corridor:
     ranks: dict[Transition, int]
     distance: dict[State, int]  # rank of the best way from the start; all goals are as near as the nearest
     optimum: int  # rank of the best plan
+
+    def stretches(self, start: State) -> list[Stretch]:
+        """Return the transitions, joined wherever a state's only way in meets its only way out."""
+        out: dict[State, list[Transition]] = {}
+        ways_in = {start: 2}  # nothing is joined there
+        for transition in self.ranks:
+            out.setdefault(transition.state, []).append(transition)
+            ways_in[transition.next_state] = ways_in.get(transition.next_state, 0) + 1
+        joints = {state for state, ways in out.items() if len(ways) == 1 and ways_in.get(state) == 1}
+        found = []
+        for first in (way for state, ways in out.items() if state not in joints for way in ways):
+            stretch = [first]
+            while stretch[-1].next_state in joints:
+                stretch += out[stretch[-1].next_state]
+            found.append(tuple(stretch))
+        return found
+
+    def reduced(self, way: Stretch) -> tuple[int, int, int]:
+        """Return a way's centimetres, merges and actions, less those by which its end is further from the start.
+
+        Every plan's total shrinks by the optimum. The best plans then total 0, where the solver starts.
+        """
+        distance = self.distance
+        own = split(sum(self.ranks[step] for step in way))
+        here, there = split(distance[way[0].state]), split(distance[way[-1].next_state])
+        return own[0] + here[0] - there[0], own[1] + here[1] - there[1], own[2] + here[2] - there[2]
 
     def optimal_transitions(self) -> set[Transition]:
         """Return the union of all best plans."""

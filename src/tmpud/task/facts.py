@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache
 from importlib.resources import files
 
 from tmpud.symbols import Action, State, Transition
+from tmpud.task.corridor import Stretch
 from tmpud.task.domain import Domain
 
 DOMAIN = ("driving.lp",)
-PLANNING = ("plan.lp", "quality.lp", "show.lp")
+ENCODING = (*DOMAIN, "plan.lp", "quality.lp", "show.lp")
 REDUCED = ("plan.lp", "reduced.lp", "show.lp")
-ENCODING = DOMAIN + PLANNING
 PLACES = ("places.lp",)
 
 Weights = Mapping[Transition, int]  # [cm]
+Reduced = tuple[int, int, int]  # centimetres, merges, actions
 
 
 def encodings() -> tuple[tuple[str, str], ...]:
@@ -36,19 +37,23 @@ def facts(domain: Domain, state: State, weights: Weights) -> str:
     return "\n".join((*lines, *_goals(domain), *weighed, *_ends(domain, state), ""))
 
 
-def steps(domain: Domain, state: State, weights: Weights) -> str:
-    """Return the instance of the encoding less ``driving.lp``: what that derives from the facts for these weights."""
-    can = (f"can({spelled(step)},{step.next_state.leg},{weight})." for step, weight in weights.items())
-    return "\n".join((*can, *_ends(domain, state), ""))
+def named(ways: Iterable[Stretch]) -> dict[str, Stretch]:
+    """Return what names each way in every predicate; where it is long, a number stands for its action."""
+    return {spelled(way[0]) if len(way) == 1 else _spelled_long(way, n): way for n, way in enumerate(ways)}
 
 
-def overs(reduced: Mapping[Transition, tuple[int, int, int]]) -> str:
-    """Return what ``reduced.lp`` takes as input beside ``steps``, from centimetres, merges and actions less a way's."""
-    return "".join(f"over({spelled(step)},{merges},{actions}).\n" for step, (_, merges, actions) in reduced.items())
+def stretches(domain: Domain, state: State, ways: Mapping[str, Stretch], reduced: Callable[[Stretch], Reduced]) -> str:
+    """Return the instance of ``plan.lp`` and ``reduced.lp`` for a plan from a state along some named ways."""
+    lines = []
+    for name, way in ways.items():
+        more = reduced(way)
+        lines.append(f"can({name},{way[-1].next_state.leg},{more[0]}).")
+        lines += [f"over({name},{amount},{3 - place})." for place, amount in enumerate(more) if amount or not place]
+    return "\n".join((*lines, *_ends(domain, state), ""))
 
 
 def places(domain: Domain, state: State, weights: Weights) -> str:
-    """Return what rules may ask for beyond the instance of ``steps``: the goals, and on which lane a segment lies."""
+    """Return what rules may ask for, too: the goals, and on which lane a segment lies."""
     segments = dict.fromkeys([state.segment, *(step.next_state.segment for step in weights)])
     segments.update(dict.fromkeys(step.state.segment for step in weights))
     lanes = ((segment, domain.network.lanes[domain.network.segments[segment].lane]) for segment in segments)
@@ -60,6 +65,11 @@ def spelled(transition: Transition) -> str:
     """Return the arguments that name a transition in every predicate, as clingo spells them, too."""
     (origin, leg), action, (target, _) = transition
     return f"{quote(origin)},{leg},{action},{quote(target)}"
+
+
+def _spelled_long(way: Stretch, number: int) -> str:
+    (origin, leg), (target, _) = way[0].state, way[-1].next_state
+    return f"{quote(origin)},{leg},{number},{quote(target)}"
 
 
 def quote(text: str) -> str:

@@ -7,15 +7,15 @@ none at all is final only on the whole map.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING
 
 from tmpud.symbols import State, Transition
-from tmpud.task.corridor import Corridor, Search, corridor, whole_map
+from tmpud.task.corridor import Corridor, Search, Stretch, corridor, whole_map
 from tmpud.task.domain import Domain
-from tmpud.task.facts import PLACES, PLANNING, REDUCED, encoding, facts, overs, places, steps
+from tmpud.task.facts import PLACES, REDUCED, encoding, facts, named, places, stretches
 from tmpud.task.solver import ask, ask_one
 from tmpud.task.ties import preferred
 from tmpud.task.utility import check_total, most, split
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from tmpud.task.rules import Rules
 
 WIDER = (1.25, 2.0)  # times the optimum without rules, while the rules allow no plan; after these the whole map
-LARGE = 100  # transitions; beyond, merges and actions are told less the way's too, which takes longer to write
 NARROW = 100_00  # [cm] added to it
 
 
@@ -48,7 +47,6 @@ class Prover:
     prune: bool = True
     rules: Rules | None = None
     options: Sequence[str] = ()  # of the solver
-    large: int = LARGE
 
     def prove(self, domain: Domain, search: Search, state: State) -> Proof | None:
         """Return the best plans from a state, None where no way leads to the goal; raises NoPlanError at a limit."""
@@ -75,38 +73,26 @@ class Prover:
         return _summed([*rounds, self._on_the_map(domain, search, state)])
 
     def _in_corridor(self, domain: Domain, state: State, given: Corridor) -> Proof:
-        less = reduced(given)
-        program = steps(domain, state, {step: weight for step, (weight, _, _) in less.items()})
-        program += encoding(REDUCED) + overs(less) if len(less) > self.large else encoding(PLANNING)
-        return self._ask(program, domain, state, given)
+        """Return the best plans in a corridor, of which a user's rules may mention every transition."""
+        ways = named([(step,) for step in given.ranks] if self.rules else given.stretches(state))
+        program = encoding(REDUCED) + stretches(domain, state, ways, given.reduced)
+        return self._ask(program, domain, state, given, ways)
 
     def _on_the_map(self, domain: Domain, search: Search, state: State) -> Proof:
         given = whole_map(search, state)
         weights = {step: split(rank)[0] for step, rank in given.ranks.items()}
-        return self._ask(encoding() + facts(domain, state, weights), domain, state, given)
+        ways = named((step,) for step in given.ranks)
+        return self._ask(encoding() + facts(domain, state, weights), domain, state, given, ways)
 
-    def _ask(self, program: str, domain: Domain, state: State, given: Corridor) -> Proof:
+    def _ask(self, program: str, domain: Domain, state: State, given: Corridor, ways: Mapping[str, Stretch]) -> Proof:
         check_total(given.ranks)
         if self.rules is None:
-            answer = ask(program, given.ranks, self.options)
+            answer = ask(program, ways, self.options)
         else:
             program += encoding(PLACES) + places(domain, state, given.ranks) + self.rules.text
-            answer = ask_one(program, given.ranks, partial(preferred, state), self.options)
+            answer = ask_one(program, ways, partial(preferred, state), self.options)
         total = answer.centimetres + split(given.optimum)[0]
         return Proof(answer.union, total, answer.optimal, len(given.ranks), 1, answer.ground_s, answer.solve_s)
-
-
-def reduced(given: Corridor) -> dict[Transition, tuple[int, int, int]]:
-    """Return centimetres, merges and actions with the distances from the start taken out of them.
-
-    Every plan's total shrinks by the optimum. The best plans then total 0, where the solver starts.
-    """
-    way = {state: split(rank) for state, rank in given.distance.items()}
-    found = {}
-    for step, rank in given.ranks.items():
-        here, there, own = way[step.state], way[step.next_state], split(rank)
-        found[step] = own[0] + here[0] - there[0], own[1] + here[1] - there[1], own[2] + here[2] - there[2]
-    return found
 
 
 def _summed(rounds: Sequence[Proof]) -> Proof:

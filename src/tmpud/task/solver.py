@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from time import perf_counter
 from typing import NamedTuple
@@ -12,7 +12,7 @@ import clingo
 
 from tmpud.errors import NoPlanError, UtilityOverflowError
 from tmpud.symbols import Transition
-from tmpud.task.facts import spelled
+from tmpud.task.corridor import Stretch
 from tmpud.task.utility import LIMIT
 
 # All optimal plans at once: the union of their atoms ("brave consequences").
@@ -44,23 +44,27 @@ class _Model(NamedTuple):
         return cls(model.symbols(shown=True), total, model.optimality_proven)
 
 
-def ask(program: str, transitions: Iterable[Transition], options: Sequence[str] = ()) -> Answer:
-    """Return the best plans of a program; raises NoPlanError where a limit of the solver came first."""
+def ask(program: str, ways: Mapping[str, Stretch], options: Sequence[str] = ()) -> Answer:
+    """Return the best plans of a program, made of ways by their names in it.
+
+    Raises NoPlanError where a limit of the solver came first.
+    """
     began = perf_counter()
     control = clingo.Control([*OPTIONS, *options])
     control.add("base", [], program)
     control.ground([("base", [])])
     grounded = perf_counter()
-    model, named = _last(control), _named(transitions)
-    union = tuple(named[str(atom)] for atom in model.atoms)
+    model = _last(control)
+    union = tuple(step for atom in model.atoms for step in ways[_name(atom)])
     return Answer(union, model.centimetres, model.optimal, grounded - began, perf_counter() - grounded)
 
 
-def ask_one(program: str, transitions: Iterable[Transition], choose: Choice, options: Sequence[str] = ()) -> Answer:
+def ask_one(program: str, ways: Mapping[str, Stretch], choose: Choice, options: Sequence[str] = ()) -> Answer:
     """Return one of the best plans of a program in which parts of different best plans may not fit together.
 
-    ``choose`` takes one transition out of their union, again out of the union of those that have it, and so on, until
-    it returns None. Raises NoPlanError, and UtilityOverflowError where the weights are too large to be added.
+    Each way is one transition. ``choose`` takes one out of their union, again out of the union of those that have it,
+    and so on, until it returns None. Raises NoPlanError, and UtilityOverflowError where the weights are too large to
+    be added.
     """
     began = perf_counter()
     control = clingo.Control([*OPTIONS, *options])
@@ -69,13 +73,13 @@ def ask_one(program: str, transitions: Iterable[Transition], choose: Choice, opt
     control.add("base", [], program)
     control.ground([("base", [])])
     grounded = perf_counter()
-    model, named = _last(control), _named(transitions)
+    model = _last(control)
     weights.check()
-    union = {named[str(atom)]: atom for atom in model.atoms}
+    union = {ways[_name(atom)][0]: atom for atom in model.atoms}
     chosen: list[tuple[clingo.Symbol, bool]] = []
     while model.optimal and (transition := choose(tuple(union))):
         chosen.append((union[transition], True))
-        union = {named[str(atom)]: atom for atom in _last(control, chosen).atoms}
+        union = {ways[_name(atom)][0]: atom for atom in _last(control, chosen).atoms}
     return Answer(tuple(union), model.centimetres, model.optimal, grounded - began, perf_counter() - grounded)
 
 
@@ -93,8 +97,9 @@ class _Weights(clingo.Observer):
             raise UtilityOverflowError("the rules add too much: all costs together must lie below 2^31")
 
 
-def _named(transitions: Iterable[Transition]) -> dict[str, Transition]:
-    return {f"do({spelled(transition)})": transition for transition in transitions}
+def _name(atom: clingo.Symbol) -> str:
+    """Return a way's name out of the atom do(...)."""
+    return str(atom)[3:-1]
 
 
 def _last(control: clingo.Control, assumptions: Sequence[tuple[clingo.Symbol, bool]] = ()) -> _Model:
