@@ -22,7 +22,10 @@ function digest() {
 const banner = `/* Built from frontend/ by "make page"; sources sha256 ${digest()} */`;
 const result = await build({
   absWorkingDir: here,
-  entryPoints: { replay: "src/main.ts", "replay-style": "src/style.css" },
+  entryPoints: [
+    { in: "src/main.ts", out: "replay" },
+    { in: "src/style.css", out: "replay" },
+  ],
   outdir: out,
   bundle: true,
   minify: true,
@@ -36,7 +39,6 @@ const result = await build({
 mkdirSync(out, { recursive: true });
 for (const file of result.outputFiles) {
   if (/<\/(script|style)|\{\{/i.test(file.text)) throw new Error(`${file.path} would end its own element`);
-  const name = file.path.endsWith(".css") ? "replay.css" : "replay.js";
-  writeFileSync(join(out, name), `${banner}\n${file.text}`);
+  writeFileSync(file.path, `${banner}\n${file.text}`);
 }
 copyFileSync(join(here, "src/page.html"), join(out, "replay.html"));

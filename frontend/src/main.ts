@@ -5,7 +5,7 @@ import { unpack } from "./document";
 import { el } from "./elements";
 import { box } from "./ground";
 import { keyboard, pointers, tools, wholeTown } from "./input";
-import { isDark } from "./palette";
+import { setDark } from "./palette";
 import { panel } from "./panel";
 import { points, Run } from "./run";
 import { Scene } from "./scene";
@@ -22,6 +22,8 @@ declare global {
 const KEPT = 2000;
 
 async function main(): Promise<void> {
+  const darkness = matchMedia("(prefers-color-scheme: dark)");
+  setDark(darkness.matches);
   const run = new Run(await unpack());
   const view = new View(run);
   const canvas = document.getElementById("scene") as HTMLCanvasElement;
@@ -37,7 +39,7 @@ async function main(): Promise<void> {
     scene.resize();
     view.changed();
   }).observe(canvas);
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => view.changed());
+  darkness.addEventListener("change", () => dark(view, darkness.matches));
   scene.resize();
   firstLook(view);
   animate(view, scene);
@@ -82,8 +84,9 @@ function note(times: number[], value: number): void {
   if (times.length > KEPT) times.shift();
 }
 
-function dark(view: View): void {
-  document.documentElement.dataset.theme = isDark() ? "light" : "dark";
+/** Change to dark colours or back, or to what the system has changed to. */
+function dark(view: View, on?: boolean): void {
+  setDark(on);
   view.changed();
 }
 

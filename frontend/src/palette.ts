@@ -49,9 +49,10 @@ const DARK: Theme = {
   paper: "#1d2126",
 };
 
-export function isDark(): boolean {
-  const chosen = document.documentElement.dataset.theme;
-  return chosen ? chosen === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
-}
+const isDark = (): boolean => document.documentElement.dataset.theme === "dark";
 
 export const theme = (): Theme => (isDark() ? DARK : LIGHT);
+
+export function setDark(dark = !isDark()): void {
+  document.documentElement.dataset.theme = dark ? "dark" : "light";
+}

@@ -95,6 +95,15 @@ def test_the_view_can_be_moved_zoomed_and_brought_back(page: Page) -> None:
     assert len(set(seen)) == len(seen)
 
 
+def test_its_colours_follow_the_system_until_they_are_changed(page: Page) -> None:
+    ink = "getComputedStyle(document.body).color"
+    light = page.evaluate(ink)
+    page.emulate_media(color_scheme="dark")
+    page.wait_for_function(f"() => {ink} !== '{light}'")
+    page.click("[aria-label='Light or dark']")
+    assert page.evaluate(ink) == light
+
+
 def test_it_fits_a_telephone(file: Path) -> None:
     with opened(file, width=390, height=844) as page:
         assert page.evaluate("document.documentElement.scrollWidth") <= 390
