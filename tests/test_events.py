@@ -26,6 +26,7 @@ from tmpud.symbols import Action, State, Transition
 KINDS = (Header, Planned, Estimated, Refused, Executed, Frame, Judged, Finished)
 
 number = st.floats(-1e6, 1e6, allow_nan=False).map(lambda value: round(value, 6))
+significant = st.floats(allow_nan=False, allow_infinity=False).map(lambda value: float(f"{value:.6g}"))
 whole = st.integers(-(2**31), 2**31)
 text = st.text(max_size=12)
 state = st.builds(State, text, st.integers(0, 3))
@@ -46,7 +47,8 @@ EVENTS = st.one_of(
     ),
     st.builds(
         Estimated, number, step, number, st.one_of(st.none(), text), number, several(text), several(several(number)),
-        several(st.tuples(number, number, number, number)),
+        several(st.tuples(number, number, number, number)), several(st.tuples(number, number, number, number, number)),
+        several(several(st.none() | st.tuples(significant, significant, significant))),
     ),
     st.builds(Refused, number, step, number, text),
     st.builds(Executed, number, step, text, st.booleans(), number),
@@ -79,6 +81,26 @@ def test_a_transition_is_written_as_one_row() -> None:
         "safe": 0.25,
         "reason": "why",
     }
+
+
+def test_an_estimate_of_schema_1_is_read_without_what_it_was_made_of() -> None:
+    row = {
+        "event": "Estimated", "time": 1.0, "step": ["a", 0, "forward", "b", 0], "safe": 0.5, "worst": "car1",
+        "min_t": 0.5, "ids": ["car1"], "o": [[0.5]], "trajectory": [[0.0, 1.0, 2.0, 0.0]],
+    }  # fmt: skip
+    event = from_json(row)
+    assert isinstance(event, Estimated)
+    assert (event.others, event.planes) == ((), ())
+    assert to_json(event) == {**row, "others": [], "planes": []}
+
+
+def test_a_half_plane_keeps_six_digits_however_small_and_no_control_at_all_is_a_limit_of_minus_infinity() -> None:
+    planes = (((-math.inf, 0.0, 0.0), None, (1.23456789e-9, 123456.789, -0.5)),)
+    event = Estimated(
+        0.0, Transition(State("a", 0), Action.FORWARD, State("b", 0)), 0.0, None, 0.0, (), (), (), (), planes
+    )
+    line = json.dumps(to_json(event), allow_nan=False)
+    assert json.loads(line)["planes"] == [[["-inf", 0.0, 0.0], None, [1.23457e-9, 123457.0, -0.5]]]
 
 
 @pytest.mark.parametrize("value", [math.inf, -math.inf, math.nan])

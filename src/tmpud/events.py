@@ -1,9 +1,10 @@
 """A run as a stream of events: what was planned, estimated, refused, done and judged, and what could be seen.
 
-Schema 1. An event is one JSON object on a line; ``event`` names its class, the other keys are the fields below.
+Schema 2. An event is one JSON object on a line; ``event`` names its class, the other keys are the fields below.
 A transition is ``[segment, leg, action, next segment, next leg]``. Lengths in ``Frame`` are whole centimetres, angles
 whole milliradians, speeds whole cm/s; everything else is in SI units; a number that is not finite
-is a string, "inf" or "-inf". Wall-clock times are not events.
+is a string, "inf" or "-inf". Wall-clock times are not events. Logs of schema 1, whose estimates have neither
+``others`` nor ``planes``, are read as well.
 """
 
 from __future__ import annotations
@@ -16,7 +17,8 @@ from typing import Any
 from tmpud.errors import RunFileError
 from tmpud.symbols import Action, State, TaskPlan, Transition
 
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
+Plane = tuple[float, float, float] | None  # limit, by_acceleration, by_turning of safety.control_set.HalfPlane
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,6 +69,8 @@ class Estimated(Event):
     ids: tuple[str, ...]  # (N,)
     o: tuple[tuple[float, ...], ...]  # (N, T)
     trajectory: tuple[tuple[float, float, float, float], ...]  # (T, 4) t, x, y, heading of the ego
+    others: tuple[tuple[float, float, float, float, float], ...] = ()  # (N, 5) x, y, heading, speed, yaw rate
+    planes: tuple[tuple[Plane, ...], ...] = ()  # (N, T) U_i^S(t); None: every control is safe
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,7 +133,7 @@ _KINDS: dict[str, type[Event]] = {
 def to_json(event: Event) -> dict[str, Any]:
     """Return an event as a JSON object."""
     plain = _same if isinstance(event, Frame) else _plain  # a frame is whole numbers and letters already
-    values = {f.name: plain(getattr(event, f.name)) for f in fields(event)}
+    values = {f.name: _WRITE.get(f.name, plain)(getattr(event, f.name)) for f in fields(event)}
     return {"event": type(event).__name__, **values}
 
 
@@ -159,6 +163,15 @@ def _plain(value: Any) -> Any:
     return value
 
 
+def _significant(planes: tuple[tuple[Plane, ...], ...]) -> list[list[list[float | str] | None]]:
+    """Keep six digits of each coefficient, whatever its size: the share in a half-plane then errs by about 1e-5."""
+    return [[plane and [_six(value) for value in plane] for plane in row] for row in planes]
+
+
+def _six(value: float) -> float | str:
+    return float(f"{value:.6g}") if math.isfinite(value) else str(value)
+
+
 def _tuples(value: Any) -> Any:
     return tuple(_tuples(item) for item in value) if isinstance(value, list) else value
 
@@ -171,6 +184,8 @@ def _transition(row: list[Any]) -> Transition:
 def _plan(rows: list[list[Any]]) -> TaskPlan:
     return tuple(_transition(row) for row in rows)
 
+
+_WRITE: dict[str, Any] = {"planes": _significant}
 
 _RESTORE: dict[str, Any] = {
     "step": _transition,

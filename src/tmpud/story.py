@@ -6,9 +6,10 @@ from collections.abc import Iterable
 from itertools import groupby
 from typing import Any
 
-from tmpud.events import SCHEMA_VERSION, Estimated, Event, Executed, Finished, Header, Judged, Planned, Refused
+from tmpud.events import Estimated, Event, Executed, Finished, Header, Judged, Planned, Refused
 from tmpud.symbols import TaskPlan, Transition
 
+SUMMARY_VERSION = 1  # of what ``summarise`` returns
 MEASURED = (  # metrics that a drive may be without, and how they are shown
     ("min_ttc", "time to collision", "at least {min_ttc:.1f} s"),
     ("rms_jerk", "jerk", "root mean square {rms_jerk:.1f} m/s^3, max {max_jerk:.1f} m/s^3"),
@@ -79,7 +80,7 @@ def actions(plan: TaskPlan) -> str:
 
 def summarise(events: Iterable[Event]) -> dict[str, Any]:
     """Return a run as one JSON object: how it ended, what was planned and what was estimated."""
-    summary: dict[str, Any] = {"schema_version": SCHEMA_VERSION, "plans": [], "estimates": [], "judged": []}
+    summary: dict[str, Any] = {"schema_version": SUMMARY_VERSION, "plans": [], "estimates": [], "judged": []}
     for event in events:
         match event:
             case Header(mission=mission):

@@ -8,6 +8,7 @@ from collections.abc import Generator
 from tmpud.errors import NoPlanError
 from tmpud.events import Estimated, Event, Planned, Refused
 from tmpud.execution.knowledge import Knowledge
+from tmpud.execution.records import estimated
 from tmpud.presets import Preset
 from tmpud.protocols import PathLengths, TaskPlanner, World
 from tmpud.safety.estimator import SafetyEstimate
@@ -142,17 +143,7 @@ class Deliberation:
 
     def estimated(self, step: Transition, estimate: SafetyEstimate) -> Estimated:
         """Return the record of an estimate."""
-        path = zip(estimate.times, estimate.trajectory.poses, strict=True)
-        return Estimated(
-            time=self.world.time,
-            step=step,
-            safe=estimate.safe,
-            worst=estimate.worst,
-            min_t=estimate.min_t,
-            ids=estimate.ids,
-            o=tuple(tuple(float(value) for value in row) for row in estimate.o),
-            trajectory=tuple((float(t), float(x), float(y), float(heading)) for t, (x, y, heading) in path),
-        )
+        return estimated(self.world.time, step, estimate)
 
     def replanned(self, step: Transition, safe: float, plan: TaskPlan, reason: str) -> Generator[Event, None, None]:
         """Yield the records of an action refused and of the plan that takes its place."""

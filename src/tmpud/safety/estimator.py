@@ -31,6 +31,8 @@ class SafetyEstimate:
     o_star: FloatArray  # (N,) o_i*
     trajectory: Trajectory  # xi^E
     times: FloatArray  # (T,) [s] relative to the scene
+    others: Vehicles | None = None  # the N vehicles; None where Safe was drawn and not estimated ...
+    sets: control_set.SafeSets | None = None  # ... and their U_i^S(t)
 
 
 class SafeSetEstimator:
@@ -68,11 +70,11 @@ class SafeSetEstimator:
         # Line 5
         index = control_set.safety_index(ego, others, predicted, self._preset)
         # Line 6
-        o = self._share(index, ego, rng)
+        sets, o = self._share(index, ego, rng)
         # Line 7
         o_star = aggregate(o, self._preset)
         # Line 9
-        return _least(o, o_star, others.ids, ego)
+        return _least(o, o_star, ego, others, sets)
 
     def _instants(self, transition: Transition) -> FloatArray:
         """Return t = t_1 + omega i over the horizon (Alg. 1, line 5), relative to t_1."""
@@ -93,16 +95,18 @@ class SafeSetEstimator:
         near = neighbours.conflicting(near, scene.ego.lane, lanes, self._network)
         return neighbours.crossing(near, ego, self._limits.width)
 
-    def _share(self, index: control_set.SafetyIndex, ego: Trajectory, rng: np.random.Generator) -> FloatArray:
-        """Return o_i(t) (N, T): 1 where the gate is shut, else the share of safe controls."""
+    def _share(
+        self, index: control_set.SafetyIndex, ego: Trajectory, rng: np.random.Generator
+    ) -> tuple[control_set.SafeSets, FloatArray]:
+        """Return U_i^S(t) and o_i(t) (N, T): 1 where the gate is shut, else the share of safe controls."""
         o = np.ones_like(index.phi)
-        used = control_set.in_use(index, ego, self._preset)
-        plane = control_set.half_plane(index, ego, self._preset, self._limits.wheelbase).at(used)
+        cut = control_set.in_use(index, ego, self._preset)
+        plane = control_set.half_plane(index, ego, self._preset, self._limits.wheelbase).at(cut)
         if self._preset.share == "sampled":
-            o[used] = sampled_share(plane, self._controls, self._preset.samples, rng)
+            o[cut] = sampled_share(plane, self._controls, self._preset.samples, rng)
         else:
-            o[used] = exact_share(plane, self._controls)
-        return o
+            o[cut] = exact_share(plane, self._controls)
+        return control_set.SafeSets(cut, plane), o
 
 
 def aggregate(o: FloatArray, preset: Preset) -> FloatArray:
@@ -111,12 +115,17 @@ def aggregate(o: FloatArray, preset: Preset) -> FloatArray:
     return np.asarray((extreme + o.mean(axis=1)) / 2)
 
 
-def _least(o: FloatArray, o_star: FloatArray, ids: tuple[str, ...], ego: Trajectory) -> SafetyEstimate:
+def _least(
+    o: FloatArray, o_star: FloatArray, ego: Trajectory, others: Vehicles, sets: control_set.SafeSets
+) -> SafetyEstimate:
     """Return min_i o_i* with its vehicle (Alg. 1, line 9)."""
+    ids = others.ids
     if not ids:
-        return SafetyEstimate(1.0, None, 1.0, ids, o, o_star, ego, ego.times)
+        return SafetyEstimate(1.0, None, 1.0, ids, o, o_star, ego, ego.times, others, sets)
     worst = int(o_star.argmin())
-    return SafetyEstimate(float(o_star[worst]), ids[worst], float(o.min()), ids, o, o_star, ego, ego.times)
+    return SafetyEstimate(
+        float(o_star[worst]), ids[worst], float(o.min()), ids, o, o_star, ego, ego.times, others, sets
+    )
 
 
 def _check(scene: Scene) -> None:
