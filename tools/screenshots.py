@@ -17,7 +17,7 @@ IMAGES = ROOT / "docs" / "images"
 
 
 def main() -> None:
-    """Open the replay of a run (runs/demo unless another is named) and take two pictures."""
+    """Open the replay of a run (runs/demo unless another is named) and take three pictures."""
     run = Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "runs" / "demo"
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "replay.html"
@@ -28,10 +28,12 @@ def main() -> None:
             page.screenshot(path=IMAGES / "replay.png")
             page.keyboard.press("w")
             page.click("[aria-label='Light or dark']")
-            page.locator(".changes li:last-child .why figure").scroll_into_view_if_needed()
+            page.locator(".changes li:last-child .why table").scroll_into_view_if_needed()
             page.wait_for_timeout(500)
             page.screenshot(path=IMAGES / "replay-plans.png")
-    print(f"wrote replay.png and replay-plans.png to {IMAGES}")
+            page.click("[aria-label='Light or dark']")
+            page.locator("#safety").screenshot(path=IMAGES / "replay-safety.png")
+    print(f"wrote replay.png, replay-plans.png and replay-safety.png to {IMAGES}")
 
 
 if __name__ == "__main__":

@@ -3,6 +3,16 @@
 export type Stop = [light: string, links: number[], x0: number, y0: number, x1: number, y1: number];
 export type StepRow = [action: string, from: string, to: string, leg: number, path: number[]];
 
+/** A control is safe where c_a acceleration + c_x turning <= limit; null: every control is. */
+export type Plane = [limit: number, byAcceleration: number, byTurning: number] | null;
+
+export interface Controls {
+  acceleration: [number, number]; // Delta [m/s^2]
+  turning: [number, number]; // Theta [rad] or [rad/s]
+  steering: boolean; // whether Theta holds steering angles, else yaw rates
+  aggregate: string; // over the instants
+}
+
 export interface Plan {
   name: string;
   time: number;
@@ -21,6 +31,8 @@ export interface Estimate {
   o: number[][];
   instants: number[];
   path: number[];
+  planes: Plane[][]; // of each vehicle at each instant; none in logs of schema 1
+  others: number[][]; // where each vehicle was predicted to be; none in logs of schema 1
 }
 
 export interface Candidate {
@@ -72,6 +84,7 @@ export interface Document {
     cars: [string, ...[number, number[], number[], number[]][]][];
     lights: Record<string, [number, string][]>;
   };
+  controls: Controls | null;
   steps: StepRow[];
   plans: Plan[];
   estimates: Estimate[];
@@ -82,7 +95,7 @@ export interface Document {
   missing: string[];
 }
 
-const SCHEMA = 1;
+const SCHEMA = 2;
 
 /** Read the document out of the page. */
 export async function unpack(): Promise<Document> {

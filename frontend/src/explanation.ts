@@ -1,13 +1,10 @@
-/** Why a plan was changed: words, the plans to choose from, what would have kept the old one, and Safe over time. */
+/** Why a plan was changed: words, the plans to choose from, what would have kept the old one. */
 
-import type { Candidate, Change, Estimate } from "./document";
-import { badge, el, metres, svg } from "./elements";
+import type { Candidate, Change } from "./document";
+import { badge, el, metres } from "./elements";
 import { planColour } from "./palette";
 import { ACTIONS, ARROWS } from "./plan";
 import type { View } from "./view";
-
-const WIDTH = 320; // [px] of the chart
-const HEIGHT = 90;
 
 export function why(view: View, change: Change): HTMLElement[] {
   const { run } = view;
@@ -20,7 +17,7 @@ export function why(view: View, change: Change): HTMLElement[] {
     ...change.words.map((text) => el("p", {}, text)),
     ...keep,
     ...(change.rows.length ? [table(view, change)] : []),
-    ...(estimate?.ids.length ? [chart(estimate)] : []),
+    ...(estimate?.ids.length ? [toSafety()] : []),
   ];
 }
 
@@ -72,32 +69,11 @@ function actions(view: View, row: Candidate): string {
   return row.steps.map((step) => ACTIONS[view.run.doc.steps[step][0]] ?? "?").join(", ");
 }
 
-/** o_i(t): how much of its freedom each vehicle leaves the car in the course of the action. */
-function chart(estimate: Estimate): HTMLElement {
-  const last = estimate.instants[estimate.instants.length - 1] || 1;
-  const at = (i: number, value: number) =>
-    `${(30 + (estimate.instants[i] / last) * (WIDTH - 40)).toFixed(1)},${(8 + (1 - value) * (HEIGHT - 28)).toFixed(1)}`;
-  const lines = estimate.ids.map((id, i) =>
-    svg(
-      "polyline",
-      { points: estimate.o[i].map((value, t) => at(t, value)).join(" "), class: id === estimate.worst ? "o worst" : "o" },
-      svg("title", {}, id),
-    ),
-  );
-  const text = (x: number, y: number, words: string, anchor: string) => svg("text", { x, y, "text-anchor": anchor }, words);
-  const axes = [
-    svg("line", { x1: 30, x2: WIDTH - 10, y1: HEIGHT - 20, y2: HEIGHT - 20, class: "grid" }),
-    svg("line", { x1: 30, x2: WIDTH - 10, y1: 8, y2: 8, class: "grid" }),
-    text(26, 12, "1", "end"),
-    text(26, HEIGHT - 17, "0", "end"),
-    text(30, HEIGHT - 5, "now", "middle"),
-    text(WIDTH - 10, HEIGHT - 5, `+${(last / 1000).toFixed(0)} s`, "end"),
-  ];
-  const words = `The share of controls that stay safe beside each vehicle during the action; the thick line is ${estimate.worst ?? "none"}.`;
-  return el(
-    "figure",
-    {},
-    svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: "chart", role: "img", "aria-label": words }, ...axes, ...lines),
-    el("figcaption", {}, words),
-  );
+/** Leads to the panel that shows the estimate behind the change. */
+function toSafety(): HTMLElement {
+  const go = () => {
+    document.getElementById("safety")?.scrollIntoView({ block: "start" });
+    document.getElementById("vehicle")?.focus({ preventScroll: true });
+  };
+  return el("button", { type: "button", class: "to-safety", onclick: go }, "Which controls would have been safe?");
 }

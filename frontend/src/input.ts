@@ -73,7 +73,7 @@ export function keyboard(view: View): void {
   };
   window.addEventListener("keydown", (event) => {
     const on = event.target as HTMLElement;
-    const own = on.tagName === "SELECT" || (on.tagName === "BUTTON" && event.key === " ");
+    const own = on.tagName === "SELECT" || (on.id === "instant" && event.key.length > 1) || (on.tagName === "BUTTON" && event.key === " ");
     const act = acts[event.key];
     if (!act || own || event.ctrlKey || event.metaKey || event.altKey) return;
     event.preventDefault();

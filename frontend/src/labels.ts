@@ -1,6 +1,6 @@
 /** What is written over the scene, in pixels. */
 
-import type { Estimate } from "./document";
+import type { Look } from "./look";
 import type { Theme } from "./palette";
 import type { Pose } from "./run";
 import type { View } from "./view";
@@ -21,7 +21,7 @@ export class Labels {
     private readonly colours: Theme,
   ) {}
 
-  draw(ego: Pose | null, estimate: Estimate | null, paths: [number, number][][], letters: Letter[]): void {
+  draw(ego: Pose | null, look: Look | null, paths: [number, number][][], letters: Letter[]): void {
     const { run, time } = this.view;
     this.ctx.lineWidth = 2;
     this.ends(paths, ego);
@@ -31,19 +31,32 @@ export class Labels {
       const below = Math.max(20, 2.5 * this.view.camera.scale + 6);
       this.words("our car", px - 20, py + below, this.colours.ego, this.colours.egoEdge);
     }
-    const worst = estimate && run.carAt(estimate.worst, time);
-    if (worst && estimate?.worst) {
-      this.ring(worst);
-      this.tag(worst, `${estimate.worst}: limits Safe to ${estimate.safe.toFixed(2)}`, this.colours.risk, this.colours.paper);
-    }
+    if (look) this.judged(look);
     for (const judged of run.doc.judged) {
       const where = Math.abs(judged.time - time) < SHOWN_FOR ? run.carAt(judged.vehicle, time) ?? ego : null;
       if (where) {
-        this.ring(where);
+        this.ring(where, this.colours.risk);
         this.tag(where, `${judged.kind.replace("_", " ")} (blame: ${judged.blame})`, this.colours.risk, this.colours.paper);
       }
     }
     this.scaleBar();
+  }
+
+  /** The vehicle that sets Safe, and the one that is looked at. */
+  private judged({ estimate, vehicle }: Look): void {
+    const { run, time } = this.view;
+    const { colours } = this;
+    const worst = run.carAt(estimate.worst, time);
+    if (worst) {
+      this.ring(worst, colours.risk);
+      this.tag(worst, `${estimate.worst}: limits Safe to ${estimate.safe.toFixed(2)}`, colours.risk, colours.paper);
+    }
+    const id = estimate.ids[vehicle];
+    const other = id === estimate.worst ? null : run.carAt(id, time);
+    if (other) {
+      this.ring(other, colours.ink);
+      this.tag(other, `${id}: looked at`, colours.ink, colours.paper);
+    }
   }
 
   private ends(paths: [number, number][][], ego: Pose | null): void {
@@ -81,9 +94,9 @@ export class Labels {
     ctx.fillText(name, px - ctx.measureText(name).width / 2, py + 4);
   }
 
-  private ring(where: Pose): void {
+  private ring(where: Pose, colour: string): void {
     const [px, py] = this.view.camera.screen(where.x, where.y);
-    this.ctx.strokeStyle = this.colours.risk;
+    this.ctx.strokeStyle = colour;
     this.ctx.beginPath();
     this.ctx.arc(px, py, Math.max(12, 4 * this.view.camera.scale), 0, 2 * Math.PI);
     this.ctx.stroke();

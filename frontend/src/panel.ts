@@ -4,6 +4,7 @@ import { badge, el, metres } from "./elements";
 import { why } from "./explanation";
 import { planColour } from "./palette";
 import { keys, legend, planInForce, repeat } from "./plan";
+import { safety } from "./safety";
 import type { View } from "./view";
 
 const ENDINGS = new Map([
@@ -23,6 +24,7 @@ export function panel(view: View): HTMLElement[] {
     changes(view),
     unsafe(view),
     planInForce(view),
+    safety(view),
     legend(),
     keys(),
     repeat(view),

@@ -123,16 +123,6 @@ export class Run {
     return Math.min(this.doc.executed.filter(driven).length, plan.steps.length);
   }
 
-  /** The last estimate before a moment that still looked at it. */
-  estimateAt(time: number): Estimate | null {
-    let found: Estimate | null = null;
-    for (const estimate of this.doc.estimates) {
-      const until = estimate.time + (estimate.instants[estimate.instants.length - 1] ?? 0);
-      if (estimate.time <= time + 0.5 && time <= until) found = estimate;
-    }
-    return found;
-  }
-
   /** The estimate that led to a plan: the one before it whose action was refused. */
   estimateBehind(change: { plan: number; step: number | null }): Estimate | null {
     const time = this.doc.plans[change.plan]?.time;

@@ -1,8 +1,8 @@
 /** Draws the scene: the town, its lights, the traffic, the car, and its plan. */
 
-import type { Estimate } from "./document";
 import { trace } from "./ground";
 import { Labels, type Letter, SHOWN_FOR } from "./labels";
+import type { Look } from "./look";
 import { type Theme, planColour, theme } from "./palette";
 import { type Pose, points } from "./run";
 import { lights, town } from "./townscape";
@@ -50,21 +50,23 @@ export class Scene {
     this.plans(ego);
     this.driven();
     lights(ctx, view);
-    const estimate = this.pointedAt();
-    if (estimate) this.motion(estimate);
-    this.cars(estimate);
+    const look = this.pointedAt();
+    if (look) this.motion(look);
+    this.cars(look);
     if (ego) this.ego(ego);
     ctx.setTransform(this.ratio, 0, 0, this.ratio, 0, 0); // CSS pixels from here on
-    new Labels(ctx, view, this.colours).draw(ego, estimate, this.paths, this.letters);
+    new Labels(ctx, view, this.colours).draw(ego, look, this.paths, this.letters);
   }
 
-  /** The estimate to point at: of the change that is explained, else of this moment where it found a risk. */
-  private pointedAt(): Estimate | null {
-    const { run, time, change } = this.view;
-    const behind = change === null ? null : run.estimateBehind(run.doc.changes[change]);
-    if (behind && Math.abs(behind.time - time) < SHOWN_FOR) return behind;
-    const now = run.estimateAt(time);
-    return now && now.worst !== null && now.safe < 1 ? now : null;
+  /** The estimate to point at: one that was asked for, or of this moment where it found a risk. */
+  private pointedAt(): Look | null {
+    const { view } = this;
+    const look = view.look();
+    if (!look) return null;
+    const { time, instants, safe } = look.estimate;
+    const asked = view.isChosen(look) && Math.abs(time - view.time) < SHOWN_FOR;
+    const risk = safe < 1 && view.time <= time + instants[instants.length - 1];
+    return asked || risk ? look : null;
   }
 
   /** The plan in force ahead of the car; the one given up, dashed, while the change is explained. */
@@ -142,22 +144,33 @@ export class Scene {
     ctx.stroke();
   }
 
-  /** The motion that an estimate judged, a dot for each instant. */
-  private motion(estimate: Estimate): void {
+  /** The motion that an estimate judged and that it predicted of a vehicle, a dot for each instant. */
+  private motion({ estimate, vehicle, instant }: Look): void {
     const { ctx } = this;
-    ctx.fillStyle = this.colours.risk;
-    for (const [x, y] of points(estimate.path)) {
-      ctx.beginPath();
-      ctx.arc(x, y, Math.max(0.3, 1.5 / this.view.camera.scale), 0, 2 * Math.PI);
-      ctx.fill();
+    const least = Math.max(0.3, 1.5 / this.view.camera.scale);
+    const [ours, theirs] = [points(estimate.path), points(estimate.others[vehicle] ?? [])];
+    ctx.fillStyle = ctx.strokeStyle = this.colours.risk;
+    for (const path of [ours, theirs]) {
+      path.forEach(([x, y], t) => {
+        ctx.beginPath();
+        ctx.arc(x, y, t === instant ? 2.5 * least : least, 0, 2 * Math.PI);
+        ctx.fill();
+      });
     }
+    const [from, to] = [ours[instant], theirs[instant]];
+    if (!from || !to) return;
+    ctx.lineWidth = 0.7 * least;
+    ctx.beginPath();
+    ctx.moveTo(...from);
+    ctx.lineTo(...to);
+    ctx.stroke();
   }
 
-  private cars(estimate: Estimate | null): void {
+  private cars(look: Look | null): void {
     const { run, time } = this.view;
     const size = run.doc.sizes.car;
     run.eachCar(time, (id, pose) => {
-      const risky = id === estimate?.worst;
+      const risky = id === look?.estimate.worst;
       this.body(pose, size, risky ? this.colours.risk : this.colours.car, 3);
     });
   }

@@ -8,7 +8,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from tmpud.events import Estimated, Event, Executed, Finished, Frame, Header, Judged, Planned, Refused
+from tmpud.events import Estimated, Event, Executed, Finished, Frame, Header, Judged, Plane, Planned, Refused
 from tmpud.presets import TMPUD
 from tmpud.recording import record
 from tmpud.roads.loading import load_map
@@ -16,6 +16,7 @@ from tmpud.symbols import Action, State, TaskPlan, Transition
 from tmpud.task.utility import penalty
 
 START, SAFE, LONGER = 10.0, 0.5, 12.5  # [s], Safe of the refused merge, [m] by which plan B is longer
+SHARES = ((1.0, 0.5, 0.3, 0.7, 1.0), (1.0, 1.0, 0.8, 0.9, 1.0))  # o_i(t) of the refused merge
 
 
 def plan(*steps: tuple[str, str, str]) -> TaskPlan:
@@ -66,12 +67,20 @@ def frame(number: int, names: Iterable[str] = ("car1", "car2"), signals: Mapping
     return Frame(round(START + 0.1 * (number + 1), 3), (4267 + 50 * number, 29425, 1, 500), ids, rows, signals or lit)
 
 
+def plane(share: float) -> Plane:
+    """Return a tilted cut that leaves a share, from 0.06 to 0.94, of the preset's controls."""
+    low, high = TMPUD.acceleration
+    return None if share == 1.0 else (low + share * (high - low), 1.0, 5.0)
+
+
 def decision(risk: str = "car1") -> list[Event]:
     """Return how plan A is given up for plan B."""
     trajectory = tuple((0.25 * i, 42.7 + 1.25 * i, 294.2 + 0.2 * i, 0.1) for i in range(5))
+    planes = tuple(tuple(map(plane, row)) for row in SHARES)
+    others = ((42.0, 297.45, 0.0, 9.0, 0.0), (49.0, 297.45, 0.0, 9.0, 0.1))
     return [
         planned(START, MERGE_NOW, 300.0, {MERGE_LATER: 300.0 + LONGER}, "start"),
-        Estimated(START, MERGE_NOW[0], SAFE, risk, 0.2, (risk,), ((1.0, 0.5, 0.2, 0.4, 0.9),), trajectory),
+        Estimated(START, MERGE_NOW[0], SAFE, risk, 0.3, (risk, "car2"), SHARES, trajectory, others, planes),
         Refused(START, MERGE_NOW[0], SAFE, "Safe(mergeleft) = 0.50"),
         planned(START, MERGE_LATER, 300.0 + LONGER, {MERGE_NOW: 300.0}, "Safe(mergeleft) = 0.50"),
     ]

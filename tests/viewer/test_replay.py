@@ -2,7 +2,9 @@ import base64
 import gzip
 import hashlib
 import json
+import math
 import re
+from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
@@ -10,7 +12,8 @@ from typing import Any
 import pytest
 
 from tests.viewer.hostile import NAMES
-from tests.viewer.made_runs import decision, events, frame, header, recorded
+from tests.viewer.made_runs import SHARES, decision, events, frame, header, recorded
+from tmpud.events import Estimated, Event
 from tmpud.viewer.replay import render, write_replay
 
 
@@ -87,3 +90,47 @@ def test_the_document_tells_the_run(tmp_path: Path) -> None:
     assert len(document["seen"]["times"]) == sum(type(event).__name__ == "Frame" for event in events())
     assert document["changes"][0]["rows"][0]["role"] == "chosen"
     assert document["judged"][0]["blame"] == "ego"
+
+
+def test_the_document_tells_what_an_estimate_was_made_of(tmp_path: Path) -> None:
+    document = document_in(page_of(tmp_path))
+    (found,) = document["estimates"]
+    assert document["controls"] == {
+        "acceleration": [-6.0, 3.0], "turning": [-0.1, 0.1], "steering": True, "aggregate": "min+mean",
+    }  # fmt: skip
+    assert found["o"] == [list(row) for row in SHARES]
+    assert found["planes"][0][:2] == [None, [-1.5, 1.0, 5.0]]
+    assert found["others"][0] == [4200, 29745, 225, 0, 225, 0, 225, 0, 225, 0]  # 9 m/s straight on
+
+
+def estimated(**values: Any) -> list[Event]:
+    """Return the run with another estimate."""
+    return [replace(event, **values) if isinstance(event, Estimated) else event for event in events()]
+
+
+def test_where_no_control_is_safe_the_limit_is_one_that_nothing_meets(tmp_path: Path) -> None:
+    planes = ((None, (-math.inf, 0.0, 0.0), None, None, None), (None,) * 5)
+    (found,) = document_in(page_of(tmp_path, estimated(planes=planes)))["estimates"]
+    assert found["planes"][0][:2] == [None, [-1e9, 0.0, 0.0]]
+
+
+def test_a_log_of_schema_1_is_shown_without_the_sets(tmp_path: Path) -> None:
+    document = document_in(page_of(tmp_path, estimated(others=(), planes=())))
+    assert document["missing"] == []
+    assert (document["estimates"][0]["planes"], document["estimates"][0]["others"]) == ([], [])
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"planes": (((0.0, 1.0, 1.0),),)},
+        {"planes": ((None,) * 5, (None, None, None, None, ("x", 0.0, 0.0)))},
+        {"planes": ((None,) * 5, (None, None, None, None, (0.0, 0.0)))},
+        {"others": ((0.0, 0.0, 0.0, 0.0, 0.0),)},
+        {"others": ((1e300, 0.0, 0.0, 1e300, 0.0), (0.0,) * 5)},
+    ],
+)
+def test_sets_that_do_not_fit_the_shares_are_damage(tmp_path: Path, values: dict[str, Any]) -> None:
+    document = document_in(page_of(tmp_path, estimated(**values)))
+    assert document["estimates"] == []
+    assert any("damaged" in told for told in document["missing"])

@@ -1,4 +1,5 @@
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -6,11 +7,24 @@ from playwright.sync_api import Page
 
 from tests.viewer.browsing import clock, opened
 from tests.viewer.hostile import NAMES
-from tests.viewer.made_runs import decision, frame, header, recorded
-from tmpud.events import Event
+from tests.viewer.made_runs import SHARES, decision, events, frame, header, recorded
+from tmpud.events import Estimated, Event
 from tmpud.viewer.replay import write_replay
 
 MOVING = "() => frameTimes.length > 0"
+# The shaded polygon's area as a share of the whole rectangle's
+SHADED = """() => {
+    const map = document.querySelector(".map"), box = map.querySelector(".border").getBBox();
+    const at = [...map.querySelector(".safe").points], next = i => at[(i + 1) % at.length];
+    const doubled = at.reduce((sum, p, i) => sum + p.x * next(i).y - p.y * next(i).x, 0);
+    return Math.abs(doubled) / 2 / box.width / box.height;
+}"""
+# The mean shade of the cells of the whole horizon
+MEAN_SHADE = """() => {
+    const sum = values => values.reduce((total, value) => total + value, 0);
+    const cells = [...document.querySelectorAll(".cell")], widths = cells.map(cell => cell.getBBox().width);
+    return sum(cells.map((cell, i) => widths[i] * cell.getAttribute("fill-opacity"))) / sum(widths);
+}"""
 
 
 def picture(page: Page) -> bytes:
@@ -102,6 +116,67 @@ def test_its_colours_follow_the_system_until_they_are_changed(page: Page) -> Non
     page.wait_for_function(f"() => {ink} !== '{light}'")
     page.click("[aria-label='Light or dark']")
     assert page.evaluate(ink) == light
+
+
+def test_the_share_at_a_chosen_instant_beside_a_chosen_vehicle_is_that_of_the_log(page: Page) -> None:
+    page.click(".flag.replan")
+    page.click(".to-safety")
+    assert page.evaluate("document.activeElement.id") == "vehicle"
+    assert page.locator("#vehicle option").all_inner_texts() == ["car1: 0.50 (sets Safe)", "car2: 0.87"]
+    assert "(0.700 + 0.300) / 2 = 0.500" in page.inner_text("#because")
+    assert shown_share(page) == min(SHARES[0])
+    for vehicle, shares in enumerate(SHARES):
+        page.select_option("#vehicle", str(vehicle))
+        assert shown_share(page) == min(shares)
+        for instant, share in enumerate(shares):
+            page.locator("#instant").fill(str(instant))
+            assert shown_share(page) == share
+            assert f"{0.25 * instant:.2f} s after" in page.inner_text("#share")
+
+
+def shown_share(page: Page) -> float:
+    return float(page.inner_text("#share b").removeprefix("o = "))
+
+
+def test_the_shaded_area_is_the_share_and_the_line_cuts_it_off(page: Page) -> None:
+    page.click(".flag.replan")
+    for instant, share in enumerate(SHARES[0]):
+        page.locator("#instant").fill(str(instant))
+        assert page.evaluate(SHADED) == pytest.approx(share, abs=0.003)
+        assert page.locator(".maps figure:first-child .cut").count() == (share < 1)
+    assert page.evaluate(MEAN_SHADE) == pytest.approx(sum(SHARES[0]) / len(SHARES[0]), abs=0.02)
+
+
+def test_the_keyboard_and_a_click_on_the_curve_choose_the_instant(page: Page) -> None:
+    page.click(".flag.replan")
+    before, moment = picture(page), clock(page)
+    page.focus("#instant")
+    page.keyboard.press("End")
+    assert page.input_value("#instant") == "4"
+    assert picture(page) != before
+    page.keyboard.press("ArrowLeft")
+    assert (page.input_value("#instant"), clock(page)) == ("3", moment)
+    page.locator(".curve").click(position={"x": 45, "y": 20})
+    assert page.input_value("#instant") == "0"
+
+
+def test_another_vehicle_is_marked_in_the_scene(page: Page) -> None:
+    page.click(".flag.replan")
+    before = picture(page)
+    page.select_option("#vehicle", "1")
+    assert picture(page) != before
+    assert "car2 does not set Safe, car1 does" in page.inner_text("#because")
+
+
+def test_a_log_of_schema_1_shows_the_curve_and_says_what_it_lacks(tmp_path: Path) -> None:
+    log = [replace(event, others=(), planes=()) if isinstance(event, Estimated) else event for event in events()]
+    write_replay(recorded(tmp_path / "run", log), tmp_path / "replay.html")
+    with opened(tmp_path / "replay.html") as page:
+        page.click(".flag.replan")
+        assert shown_share(page) == min(SHARES[0])
+        assert page.locator(".curve .chosen").count() == 1
+        assert page.locator(".map").count() == 0
+        assert "schema 1" in page.inner_text(".maps")
 
 
 def test_it_fits_a_telephone(file: Path) -> None:

@@ -1,7 +1,7 @@
-"""A run as one JSON document, all that the replay's page is told. Schema 1.
+"""A run as one JSON document, all that the replay's page is told. Schema 2.
 
 Times are whole milliseconds of simulated time, places whole centimetres, headings whole milliradians; lengths of
-plans are metres.
+plans are metres, coefficients of safe control sets SI units.
 """
 
 from __future__ import annotations
@@ -24,9 +24,10 @@ from tmpud.viewer.intact import Intact
 from tmpud.viewer.memory import preset_of
 from tmpud.viewer.paths import mapping_of, plan_outline
 from tmpud.viewer.reasons import Change
+from tmpud.viewer.sets import control_ranges, planes, predicted
 from tmpud.viewer.traffic import columns
 
-SCHEMA = 1
+SCHEMA = 2
 CAR = (5.0, 1.8)  # [m] length and width of SUMO's usual car: the log holds no sizes
 TOLD = ("map", "start", "goal", "via", "algorithm", "beta", "traffic", "seed", "preset")
 
@@ -43,6 +44,7 @@ def replay_document(run: Intact) -> dict[str, Any]:
         "sizes": {"ego": [EGO.length, EGO.width], "car": CAR},
         "ground": ground(network) if network else None,
         "seen": columns(run.frames),
+        "controls": _controls(run),
         "plans": [_planned(event, number, steps) for number, event in enumerate(plans)],
         "estimates": [_estimated(event, steps) for event in run.events if isinstance(event, Estimated)],
         "executed": [_executed(event, steps) for event in run.events if isinstance(event, Executed)],
@@ -108,6 +110,14 @@ def _changes(run: Intact) -> list[Change]:
         return []
 
 
+def _controls(run: Intact) -> dict[str, Any] | None:
+    try:
+        return control_ranges(run.header.mission["settings"])
+    except (KeyError, TypeError, ValueError) as error:
+        run.missing.append(f"safe controls cannot be drawn: the header's settings cannot be read ({error!r})")
+        return None
+
+
 def _planned(event: Planned, number: int, steps: _Steps) -> dict[str, Any]:
     return {
         "name": plan_name(number),
@@ -129,6 +139,8 @@ def _estimated(event: Estimated, steps: _Steps) -> dict[str, Any]:
         "o": [[round(value, 3) for value in row] for row in event.o],
         "instants": [_ms(row[0]) for row in event.trajectory],
         "path": line((x, y) for _, x, y, _ in event.trajectory),
+        "planes": planes(event),
+        "others": predicted(event),
     }
 
 

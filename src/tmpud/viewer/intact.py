@@ -106,9 +106,9 @@ def sound(event: Event) -> bool:
             )
         case Estimated(ids=ids, o=o, trajectory=path):
             shaped = len(ids) == len(o) and len({len(row) for row in o}) <= 1 and all(len(row) == 4 for row in path)
-            numbers = all(_number(value) for rows in (o, path) for row in rows for value in row)
+            numbers = all(_small(value) for rows in (o, path) for row in rows for value in row)
             named = _text(*ids) and (event.worst is None or _text(event.worst))
-            return shaped and numbers and named and _step(event.step) and _share(event.safe)
+            return shaped and numbers and named and _step(event.step) and _share(event.safe) and _made_of(event)
         case Refused(step=step, safe=safe, reason=reason):
             return _step(step) and _share(safe) and _text(reason)
         case Executed(step=step, outcome=outcome, distance=distance):
@@ -125,8 +125,22 @@ def sound(event: Event) -> bool:
     return False
 
 
+def _made_of(event: Estimated) -> bool:
+    """Whether the vehicles and sets of an estimate fit its shares, or are left out as in schema 1."""
+    others, planes = event.others, event.planes
+    states = all(len(row) == 5 and all(_small(value) for value in row) for row in others)
+    shaped = [len(row) for row in planes] == [len(row) for row in event.o] or not planes
+    sets = all(len(plane) == 3 and _real(*plane) for row in planes for plane in row if plane is not None)
+    return states and len(others) in (0, len(event.ids)) and shaped and sets
+
+
 def _number(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+
+
+def _small(value: Any) -> bool:
+    """Whether it is a number that positions can be computed from."""
+    return _number(value) and abs(value) < traffic.MOST
 
 
 def _real(*values: Any) -> bool:
