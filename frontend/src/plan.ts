@@ -27,6 +27,7 @@ const LEGEND: [string, string][] = [
   ["ahead", "the plan ahead, in its plan's colour"],
   ["given-up", "a plan given up, or one pointed at"],
   ["risk", "the vehicle that limits Safe, or what was judged unsafe"],
+  ["dots", "how an estimate expects our car and that vehicle to move"],
   ["red", "red light"],
   ["yellow", "yellow light"],
   ["green", "green light"],

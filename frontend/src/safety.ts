@@ -55,7 +55,7 @@ export function safety(view: View): HTMLElement | null {
     instants.max = String(look.estimate.instants.length - 1);
     instants.value = String(look.instant);
     instants.setAttribute("aria-valuetext", after(look));
-    why.textContent = because(run, look);
+    why.replaceChildren(...because(run, look));
     share.replaceChildren(...shares(look));
     graph.replaceChildren(curve(look, (instant) => choose(look.vehicle, instant)));
     maps.replaceChildren(...pictures(run, look));
@@ -102,14 +102,16 @@ function ofVehicle(run: Run, estimate: Estimate, vehicle: number): { value: numb
   return { value: (mean + extreme) / 2, mean, extreme, best };
 }
 
-function because(run: Run, { estimate, vehicle }: Look): string {
+/** Why Safe is what it is, or what it would be beside another vehicle. */
+function because(run: Run, { estimate, vehicle }: Look): (HTMLElement | string)[] {
   const { value, mean, extreme, best } = ofVehicle(run, estimate, vehicle);
   const id = estimate.ids[vehicle];
   const worst = id === estimate.worst;
   const last = (estimate.instants[estimate.instants.length - 1] / 1000).toFixed(1);
   const means = `(${mean.toFixed(3)} + ${extreme.toFixed(3)}) / 2 = ${value.toFixed(3)}`;
   const name = worst ? `Safe is set by ${id}, the worst of ${estimate.ids.length}` : `${id} does not set Safe, ${estimate.worst} does`;
-  return `${name}: over the ${last} s of the action ${percent(mean)} of the controls stay safe beside ${id} on average and ${percent(extreme)} at the ${best ? "best" : "worst"} instant, which makes ${means}.`;
+  const words = `${name}: over the ${last} s of the action ${percent(mean)} of the controls stay safe beside ${id} on average and ${percent(extreme)} at the ${best ? "best" : "worst"} instant, which makes `;
+  return [words, el("span", { class: "sum" }, `${means}.`)];
 }
 
 function shares(look: Look): (HTMLElement | string)[] {

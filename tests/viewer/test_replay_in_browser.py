@@ -160,6 +160,21 @@ def test_the_keyboard_and_a_click_on_the_curve_choose_the_instant(page: Page) ->
     assert page.input_value("#instant") == "0"
 
 
+def test_the_panel_follows_the_drive_and_goes_from_estimate_to_estimate(tmp_path: Path) -> None:
+    refused = next(event for event in events() if isinstance(event, Estimated))
+    later = replace(refused, time=12.0, safe=0.9, o=SHARES[::-1], planes=refused.planes[::-1])
+    write_replay(recorded(tmp_path / "run", [*events(), later]), tmp_path / "replay.html")
+    with opened(tmp_path / "replay.html") as page:
+        told = page.locator("#safety .estimate")
+        assert told.inner_text() == "0:00.0: merge left, Safe = 0.50"
+        page.click("[aria-label='The next estimate']")
+        assert (told.inner_text(), clock(page)) == ("0:02.0: merge left, Safe = 0.90", 2.0)
+        page.click("[aria-label='The estimate before']")
+        assert (told.inner_text(), clock(page)) == ("0:00.0: merge left, Safe = 0.50", 0.0)
+        page.keyboard.press("End")
+        assert told.inner_text() == "0:02.0: merge left, Safe = 0.90"
+
+
 def test_another_vehicle_is_marked_in_the_scene(page: Page) -> None:
     page.click(".flag.replan")
     before = picture(page)
