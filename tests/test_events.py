@@ -101,6 +101,10 @@ def test_a_half_plane_keeps_six_digits_however_small_and_no_control_at_all_is_a_
     )
     line = json.dumps(to_json(event), allow_nan=False)
     assert json.loads(line)["planes"] == [[["-inf", 0.0, 0.0], None, [1.23457e-9, 123457.0, -0.5]]]
+    back = from_json(json.loads(line))
+    assert isinstance(back, Estimated)
+    assert back.planes == (((-math.inf, 0.0, 0.0), None, (1.23457e-9, 123457.0, -0.5)),)
+    assert to_json(back) == to_json(event)
 
 
 @pytest.mark.parametrize("value", [math.inf, -math.inf, math.nan])

@@ -185,10 +185,19 @@ def _plan(rows: list[list[Any]]) -> TaskPlan:
     return tuple(_transition(row) for row in rows)
 
 
+def _planes(rows: list[list[list[Any] | None]]) -> tuple[tuple[Plane, ...], ...]:
+    return tuple(tuple(None if plane is None else _plane(*plane) for plane in row) for row in rows)
+
+
+def _plane(limit: Any, by_acceleration: Any, by_turning: Any) -> Plane:
+    return float(limit), float(by_acceleration), float(by_turning)
+
+
 _WRITE: dict[str, Any] = {"planes": _significant}
 
 _RESTORE: dict[str, Any] = {
     "step": _transition,
     "plan": _plan,
+    "planes": _planes,
     "alternatives": lambda rows: tuple((_plan(plan), cost, penalty) for plan, cost, penalty in rows),
 }

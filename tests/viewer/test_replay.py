@@ -124,7 +124,7 @@ def test_a_log_of_schema_1_is_shown_without_the_sets(tmp_path: Path) -> None:
     "values",
     [
         {"planes": (((0.0, 1.0, 1.0),),)},
-        {"planes": ((None,) * 5, (None, None, None, None, ("x", 0.0, 0.0)))},
+        {"planes": ((None,) * 5, (None, None, None, None, (math.nan, 0.0, 0.0)))},
         {"planes": ((None,) * 5, (None, None, None, None, (0.0, 0.0)))},
         {"others": ((0.0, 0.0, 0.0, 0.0, 0.0),)},
         {"others": ((1e300, 0.0, 0.0, 1e300, 0.0), (0.0,) * 5)},

@@ -130,7 +130,8 @@ def _made_of(event: Estimated) -> bool:
     others, planes = event.others, event.planes
     states = all(len(row) == 5 and all(_small(value) for value in row) for row in others)
     shaped = [len(row) for row in planes] == [len(row) for row in event.o] or not planes
-    sets = all(len(plane) == 3 and _real(*plane) for row in planes for plane in row if plane is not None)
+    coefficients = [value for row in planes for plane in row if plane for value in plane]
+    sets = all(_number(value) or value == -math.inf for value in coefficients)
     return states and len(others) in (0, len(event.ids)) and shaped and sets
 
 

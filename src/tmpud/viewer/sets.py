@@ -35,7 +35,7 @@ def _range(ends: tuple[float, float]) -> list[float]:
 
 def planes(event: Estimated) -> list[list[list[float] | None]]:
     """Return the half-planes (N, T) as the page is told them: null where every control is safe."""
-    return [[plane and [max(float(value), NONE_SAFE) for value in plane] for plane in row] for row in event.planes]
+    return [[plane and [max(value, NONE_SAFE) for value in plane] for plane in row] for row in event.planes]
 
 
 def predicted(event: Estimated) -> list[list[int]]:
