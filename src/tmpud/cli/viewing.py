@@ -1,4 +1,4 @@
-"""Look at runs: ``replay``."""
+"""Look at runs: ``replay`` and ``view``."""
 
 from __future__ import annotations
 
@@ -23,3 +23,28 @@ def replay(
     for line in write_replay(run, file):
         typer.echo(f"missing: {line}", err=True)
     typer.echo(f"wrote {file} ({file.stat().st_size / 1e3:,.0f} kB)")
+
+
+@app.command()
+def view(
+    where: Annotated[
+        Path | None,
+        typer.Argument(
+            metavar="[RUN|DIR]",
+            help="A run, or a folder in which to look for runs and experiments; default: runs and results, or here.",
+            exists=True,
+            file_okay=False,
+        ),
+    ] = None,
+    port: Annotated[int, typer.Option(min=0, max=65_535, help="The port to serve on; 0: any that is free.")] = 0,
+) -> None:
+    """Show runs and experiments in a browser, also while they are written. Ctrl-C ends it."""
+    from tmpud.server.serving import listen, serve
+
+    try:
+        listener = listen(port)
+    except OSError as error:
+        raise typer.BadParameter(f"{port} cannot be had: {error.strerror}.", param_hint="'--port'") from error
+    usual = [folder for folder in (Path("runs"), Path("results")) if folder.is_dir()]
+    with listener:
+        serve([where] if where else usual or [Path()], listener, typer.echo)

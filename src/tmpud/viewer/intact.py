@@ -59,7 +59,7 @@ def _events(path: Path, damaged: list[str]) -> Iterator[Event]:
     try:
         with gzip.open(path, "rt", encoding="utf-8", errors="replace") as log:
             for number, line in enumerate(log, 1):
-                event = _event(line)
+                event = read_event(line)
                 if event is None:
                     damaged.append(f"line {number}")
                 else:
@@ -70,7 +70,7 @@ def _events(path: Path, damaged: list[str]) -> Iterator[Event]:
         damaged.append(f"everything after line {number} ({error})")
 
 
-def _event(line: str) -> Event | None:
+def read_event(line: str) -> Event | None:
     """Return the event on a line; None where there is none, or not one that can be shown."""
     try:
         event = from_json(json.loads(line))

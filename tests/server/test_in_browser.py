@@ -1,0 +1,83 @@
+"""The pages in a browser: names do nothing, the list follows what is written, the replay plays inside its page."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Page, sync_playwright
+
+from tests.server.asking import Served, served
+from tests.server.test_pages import TASKS, campaign, done, hostile_folder
+from tests.viewer.browsing import CHROMIUM
+from tests.viewer.hostile import NAMES
+from tests.viewer.made_runs import recorded
+from tmpud.recording import LOG
+
+
+@contextmanager
+def browsing(server: Served, expected: str = "nothing at all") -> Iterator[Page]:
+    """Open the list; fail if a page asks anybody else or says anything unexpected on the console."""
+    if CHROMIUM is None:
+        pytest.skip("Chromium is not installed")
+    said: list[str] = []
+    with sync_playwright() as browsers:
+        browser = browsers.chromium.launch(executable_path=CHROMIUM)
+        page = browser.new_page()
+        page.set_default_timeout(120_000)
+        page.on("console", lambda message: said.append(message.text))
+        page.on("pageerror", lambda error: said.append(str(error)))
+        page.on("dialog", lambda dialog: said.append(dialog.message))
+        page.on("request", lambda asked: said.append(asked.url) if not asked.url.startswith(server.url) else None)
+        page.goto(server.url)
+        yield page
+        browser.close()
+    assert [line for line in said if expected not in line] == []
+
+
+def test_hostile_names_do_nothing(tmp_path: Path) -> None:
+    root = hostile_folder(tmp_path / "root")
+    refusal = "/report' because the document's frame is sandboxed and the 'allow-scripts' permission is not set"
+    with served(root) as server, browsing(server, refusal) as page:
+        links = page.locator("tbody a").evaluate_all("links => links.map(link => link.href)")
+        assert len(links) == len(NAMES) + 1
+        (root / "sweep" / "report.html").write_text("<script>window.top.struck = window.struck = 1</script>")
+        for link in [*links, f"{server.url}{server.link('root/sweep')}"]:
+            assert page.evaluate("window.struck") is None
+            page.route("**/replay", lambda route: route.fulfill(body=""))
+            page.goto(link)
+        assert page.evaluate("window.struck") is None
+
+
+def test_the_list_follows_a_campaign_and_a_run(tmp_path: Path) -> None:
+    data = (recorded(tmp_path / "made") / LOG).read_bytes()
+    root = tmp_path / "root"
+    (root / "run").mkdir(parents=True)
+    (root / "run" / LOG).write_bytes(data[:1400])
+    with campaign(root / "sweep") as store, served(root) as server, browsing(server) as page:
+        page.wait_for_selector("text=0 of 4")
+        page.wait_for_selector("text=being written")
+        store.append([done(task) for task in TASKS[:3]])
+        (root / "run" / LOG).write_bytes(data)
+        page.wait_for_selector("text=3 of 4")
+        page.wait_for_selector("text=SUCCESS")
+
+
+def test_a_replay_plays_inside_its_page_and_what_came_since_can_be_had(tmp_path: Path) -> None:
+    data = (recorded(tmp_path / "made") / LOG).read_bytes()
+    (tmp_path / "root" / "run").mkdir(parents=True)
+    log = tmp_path / "root" / "run" / LOG
+    log.write_bytes(data[: len(data) * 3 // 4])
+    with served(tmp_path / "root") as server, browsing(server) as page:
+        page.click("text=root/run")
+        replay = page.frame_locator("#frame")
+        replay.locator("#missing").wait_for()
+        assert "no end" in replay.locator("#missing").inner_text()
+        log.write_bytes(data)
+        page.click("text=Show what came since")
+        replay.locator("#missing").wait_for(state="detached")
+        replay.locator("#play").click()
+        replay.locator("#clock").wait_for()
+        assert page.locator("#newer").is_hidden()
