@@ -36,7 +36,28 @@ def test_in_whatever_pieces_a_log_comes_it_ends_up_the_same(
     assert isinstance(log.last, Finished)
 
 
-def test_another_run_in_its_place_is_read_anew(tmp_path: Path) -> None:
+@pytest.mark.parametrize("end", [400, None], ids=["that was not whole", "that was whole"])
+@pytest.mark.parametrize("removed", [False, True])
+def test_another_run_in_the_place_of_one(tmp_path: Path, data: bytes, end: int | None, removed: bool) -> None:
+    others = [header(seed=seed, start="x" * length) for seed, length in ((2, 1), (3, 9000))]
+    for number, other in enumerate([*others, None]):
+        whole = data if other is None else (recorded(tmp_path / f"other{number}", [other]) / LOG).read_bytes()
+        file = tmp_path / LOG
+        file.write_bytes((recorded(tmp_path / "first", [header(seed=1)]) / LOG).read_bytes()[:end])
+        log = Log(file)
+        log.read_on(inf)
+        if removed:
+            file.rename(tmp_path / "old")
+        file.write_bytes(whole)
+        log.read_on(inf)
+        anew = Log(file)
+        anew.read_on(inf)
+        assert (log.lines, log.first, log.last, log.damage) == (anew.lines, anew.first, anew.last, "")
+        assert isinstance(log.first, Header)
+        assert other is None or log.first.mission["seed"] == other.mission["seed"]
+
+
+def test_a_shorter_run_in_its_place_is_read_anew(tmp_path: Path) -> None:
     log = Log(recorded(tmp_path / "run") / LOG)
     log.read_on(inf)
     recorded(tmp_path / "run", [header()])

@@ -6,11 +6,13 @@ import os
 import time
 import zlib
 from pathlib import Path
+from typing import BinaryIO
 
 from tmpud.events import Event
 from tmpud.viewer.intact import read_event
 
 BLOCK = 1 << 16  # bytes of the file read at a time
+HEAD = 4096  # bytes by which runs are told apart
 LONGEST = 1 << 24  # bytes of a line
 
 
@@ -27,25 +29,34 @@ class Log:
         self.lines = 0
         self.damage = ""
         self._at = 0  # bytes of the file read
-        self._stamp = (0, 0)
+        self._stamp = (0, 0)  # inode, time of change
+        self._head = b""  # the first bytes, as far as they were there when it was first read
         self._rest = b""  # of a line that has no end yet
         self._packed = zlib.decompressobj(wbits=31)
 
     def read_on(self, until: float) -> bool:
         """Read what is new; return whether the end was reached before the monotonic clock was at ``until``."""
         with self._file.open("rb") as file:
+            if self._is_another(file):
+                self._begin()
             found = os.fstat(file.fileno())
-            stamp = (found.st_ino, found.st_mtime_ns)
-            if found.st_size < self._at or (self.damage and stamp != self._stamp):
-                self._begin()  # another run was written there
-            self._stamp = stamp
+            self._stamp = (found.st_ino, found.st_mtime_ns)
             file.seek(self._at)
             while not self.damage and (block := file.read(BLOCK)):
+                self._head = self._head or block[:HEAD]
                 self._at += len(block)
                 self._take(block)
                 if time.monotonic() > until:
                     return False
         return True
+
+    def _is_another(self, file: BinaryIO) -> bool:
+        """Whether another run was written in this one's place, perhaps a longer one."""
+        found, head = os.fstat(file.fileno()), file.read(HEAD)
+        over = (self._packed.eof or self.damage) and found.st_mtime_ns != self._stamp[1]
+        return (
+            found.st_size < self._at or found.st_ino != self._stamp[0] or not head.startswith(self._head) or bool(over)
+        )
 
     def _take(self, block: bytes) -> None:
         try:
