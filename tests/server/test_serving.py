@@ -9,9 +9,10 @@ import sys
 import urllib.request
 from collections.abc import Iterator
 from contextlib import contextmanager
+from itertools import chain
 from pathlib import Path
 
-from tests.viewer.made_runs import header, recorded
+from tests.viewer.made_runs import events, frame, header, recorded
 
 COMMAND = (sys.executable, "-c", "from tmpud.cli import main; main()", "view")
 
@@ -47,7 +48,7 @@ def test_it_says_one_address_shows_runs_and_results_and_ends_on_ctrl_c(tmp_path:
 
 
 def test_ctrl_c_ends_a_replay_that_is_being_made(tmp_path: Path) -> None:
-    recorded(tmp_path / "one")
+    recorded(tmp_path / "one", chain(events(), (frame(number) for number in range(40, 20_000))))  # takes long to show
     with viewing(tmp_path, "one") as (process, url):
         host, _, rest = url.removeprefix("http://").partition("/")
         link = read(url).partition('<a href="')[2].partition('"')[0]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import hashlib
 import time
 from collections.abc import Sequence
@@ -83,6 +84,8 @@ class _Pages:
             page = await self._replays.page(entry.folder)
         except TmpudError as error:
             raise HTTPException(404, str(error)) from error
+        except asyncio.CancelledError:  # the server ends
+            return Response(status_code=503)
         return HTMLResponse(page, headers={"Content-Security-Policy": REPLAY_POLICY})
 
     def _list(self) -> dict[str, Any]:

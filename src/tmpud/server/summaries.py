@@ -89,7 +89,8 @@ def _run(log: Log, fresh: bool) -> Summary:
         details = ((end.status, f"{far}{'; ' if end.message else ''}{end.message}"), lines)
         return Summary(state=ENDED, status=end.status, about=about, details=details, missing=tuple(missing))
     seen = (("simulated time", f"{end.time:,.1f} s"), lines) if end else (lines,)
-    missing.append("the run has no end: it is still going on or was broken off")
+    if not live:
+        missing.append("the run has no end: it was broken off, or stands still")
     state, status = (WRITTEN, "being written") if live else (BROKEN, "no end")
     return Summary(state=state, status=status, about=about, details=seen, missing=tuple(missing))
 

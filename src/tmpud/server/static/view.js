@@ -8,10 +8,10 @@ async function refresh() {
   try {
     const answer = await fetch(`${live.dataset.part}?seen=${live.dataset.seen}`);
     if (answer.status === 200) {
-      const open = live.querySelector("details")?.open;
+      const before = live.querySelector("details");
       live.innerHTML = await answer.text(); // every name in it is escaped by the server
       live.dataset.seen = answer.headers.get("X-Seen");
-      if (open) live.querySelector("details")?.setAttribute("open", "");
+      if (before !== null) live.querySelector("details")?.toggleAttribute("open", before.open);
       compare();
     }
     lost.hidden = answer.ok;
