@@ -210,6 +210,15 @@ def test_no_tasks_are_done_at_once(tmp_path: Path) -> None:
     assert list(run(tmp_path, [])) == []
 
 
+@pytest.fixture
+def heard() -> Iterator[None]:
+    """Have SIGINT heard where the shell that started the tests in the background had it ignored."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("heard")
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_an_interrupt_leaves_no_worker_and_loses_nothing(tmp_path: Path, number: signal.Signals) -> None:
     todo = [*tasks(3), *tasks(8, seconds=30.0, group=1)[4:]]
