@@ -38,17 +38,21 @@ class UnknownError(Exception):
     """Nobody has driven so."""
 
 
-class RecordedWorld(SimulatedWorld):
-    """A simulated world that notes what comes of each action."""
+class _Remembering(SimulatedWorld):
+    _history: History
 
     def __init__(self, memory: Memory, *parts: Any, **options: Any) -> None:
         """``parts`` and ``options`` are those of the simulated world."""
         super().__init__(*parts, **options)
         self._memory = memory
 
+
+class RecordedWorld(_Remembering):
+    """A simulated world that notes what comes of each action."""
+
     def enter(self, lane: str, station: float) -> None:
         super().enter(lane, station)
-        self._history: History = ((lane, station),)
+        self._history = ((lane, station),)
         self._note((), Outcome.DONE)
 
     def execute(self, step: Transition, upcoming: TaskPlan) -> Generator[Event, None, Outcome]:
@@ -69,16 +73,11 @@ class RecordedWorld(SimulatedWorld):
         )
 
 
-class RecalledWorld(SimulatedWorld):
+class RecalledWorld(_Remembering):
     """A world in which only what is known can be driven, and the simulator is never asked; else UnknownError."""
 
-    def __init__(self, memory: Memory, *parts: Any, **options: Any) -> None:
-        """``parts`` and ``options`` are those of the simulated world."""
-        super().__init__(*parts, **options)
-        self._memory = memory
-
     def enter(self, lane: str, station: float) -> None:
-        self._history: History = ((lane, station),)
+        self._history = ((lane, station),)
         self._recall()
         self.began = self.scene.time
 

@@ -1,9 +1,9 @@
 """P^t: the task planner of Sec. IV-C, by answer set programming.
 
-What does what: Python looks up the weights and leaves out transitions that cannot lie on an optimal plan
-(``corridor.py``; ``prune=False`` leaves out nothing). clingo decides: it makes the plans of what is left, proves the
-least (centimetres, merges, actions), and returns the union of all plans that have it. Whichever way one walks along
-that union, the plan is optimal; the walk takes the earliest merge, then the smallest lane id (``ties.py``).
+What does what: Python looks up the weights, leaves out transitions that cannot lie on an optimal plan (``corridor.py``;
+``prune=False`` leaves out nothing) and joins those that leave no choice. clingo decides: it makes the plans of what is
+left, proves the least (centimetres, merges, actions), and returns the union of all plans that have it. Whichever way
+one walks along it, the plan is optimal; the walk takes the earliest merge, then the smallest lane id (``ties.py``).
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ class PlanReport:
     total_cm: int  # [cm] what was minimised: the sum for each transition, rounded once
     optimal: bool  # proved
     rules_m: float = 0.0  # [m] added by the user's rules
-    transitions: int = 0  # given to the solver: the corridor's size
+    transitions: int = 0  # of the corridor
     rounds: int = 0  # corridors that were tried
     ground_s: float = field(default=0.0, compare=False)  # [s] wall-clock
     solve_s: float = field(default=0.0, compare=False)  # [s] wall-clock

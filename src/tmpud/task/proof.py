@@ -34,7 +34,7 @@ class Proof:
     union: tuple[Transition, ...]  # of all best plans; with rules, of the preferred one; empty: there is none
     centimetres: int  # the least total, rules included
     optimal: bool
-    transitions: int  # given to the solver in the last round
+    transitions: int  # of the corridor, or map, of the last round
     rounds: int = 1
     ground_s: float = 0.0  # [s] wall-clock, of all rounds
     solve_s: float = 0.0
