@@ -13,7 +13,8 @@ from tmpud.roads.xml_reading import shown
 
 OPENDRIVE = ".xodr"
 _TOWNS = Path(__file__).parent / "towns"
-_SUFFIXES = (".net.xml", ".net.xml.gz", OPENDRIVE)
+NETS = (".net.xml", ".net.xml.gz")
+_SUFFIXES = (*NETS, OPENDRIVE)
 
 
 def shipped_towns() -> tuple[str, ...]:

@@ -79,11 +79,10 @@ def _lane(parts: Row, row: Row, strands: Strands, roads: Mapping[int, Road]) -> 
     first, row_of = parts[0], [strands[part] for part in parts]
     points = [point for strand in row_of for point in strand.points]
     elevation = [z for strand in row_of for z in strand.elevation]
+    apart = distinct(points)
+    points, elevation = [points[i] for i in apart], [elevation[i] for i in apart]
     kept = simplified(points, elevation)
     centre = Polyline(points[i] for i in kept)
-    if len(centre.points) < len(kept):  # the polyline left out points that equal the one before
-        height = {points[i]: elevation[i] for i in kept}
-        elevation, kept = [height[point] for point in centre.points], list(range(len(centre.points)))
     samples = sum(len(strand.points) for strand in row_of)
     return Lane(
         id=str(first),
@@ -129,6 +128,15 @@ def _crossable(strand: Strand, road: Road, *, inward: bool) -> Iterator[tuple[fl
     first = strand.span[0]
     for start, end in road.crossable(strand.key.section, border, change):
         yield (start - first, end - first) if lane < 0 else (first - end, first - start)
+
+
+def distinct(points: Sequence[Point]) -> list[int]:
+    """Return which points to keep so that none lies where the one before does; the last one is kept, or its like."""
+    kept: list[int] = []
+    for i, point in enumerate(points):
+        if not kept or math.dist(points[kept[-1]], point) > SAME:
+            kept.append(i)
+    return kept
 
 
 def simplified(points: Sequence[Point], elevation: Sequence[float]) -> list[int]:

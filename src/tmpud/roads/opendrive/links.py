@@ -9,7 +9,7 @@ from itertools import pairwise
 
 from tmpud.geometry import Polyline, wrap_angle
 from tmpud.roads.network import LaneConnection
-from tmpud.roads.opendrive.lanes import LaneParts, Row, Strands, simplified
+from tmpud.roads.opendrive.lanes import LaneParts, Row, Strands, distinct, simplified
 from tmpud.roads.opendrive.strands import Key
 from tmpud.roads.sumo_links import joined
 from tmpud.symbols import Action
@@ -63,10 +63,13 @@ def _shortest(ways: Iterator[Way], strands: Strands) -> list[Way]:
 
 
 def _path(curves: Mapping[str, Polyline], way: Way, strands: Strands) -> Polyline:
-    points = [point for key in way[2] for point in strands[key].points]
-    if len(points) > 2:
-        points = [points[i] for i in simplified(points, [0.0] * len(points))]
-    return joined(curves[way[0]], points, curves[way[1]])
+    start, end = curves[way[0]], curves[way[1]]
+    points = [start.points[-1], *(point for key in way[2] for point in strands[key].points), end.points[0]]
+    apart = [points[i] for i in distinct(points)]
+    if len(apart) == 1:
+        return Polyline([points[0], end.pose_at(min(0.1, end.length))[:2]])
+    inner = [apart[i] for i in simplified(apart, [0.0] * len(apart))][1:-1]
+    return joined(start, inner, end)
 
 
 def bend(path: Polyline, start: Polyline, end: Polyline) -> float:
