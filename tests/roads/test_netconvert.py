@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import os
+import random
 from pathlib import Path
 
 import pytest
@@ -8,8 +9,11 @@ import pytest
 from tests.conftest import SHARED_MAPS
 from tests.roads.opendrive.crossroads import crossroads
 from tmpud.errors import MapError
+from tmpud.planning import Problem
 from tmpud.roads.netconvert import import_net
+from tmpud.roads.network import RoadNetwork
 from tmpud.roads.opendrive.reading import has_carla, read_opendrive
+from tmpud.roads.places import resolve
 from tmpud.roads.sumo_net import read_sumo_net
 from tmpud.symbols import Action
 
@@ -75,3 +79,16 @@ def test_carlas_town_has_as_many_lanes_turns_and_lights_by_either_way(tmp_path: 
         here, _, offset = town.locate(*lane.centre.pose_at(lane.length / 2)[:2])
         assert abs(offset) < 0.1
         assert abs(here.length - lane.length) < 1.0
+    for seed in range(5):
+        places = [resolve(town, "random", random.Random(seed + end)) for end in (0, 100)]
+        here, there = (_position(town, place.segments[0]) for place in places)
+        carla, sumo = (Problem.of(each.source, here, there).solve() for each in (town, net))
+        assert sumo.cost_m == pytest.approx(carla.cost_m, rel=0.005)
+        assert [step.action for step in sumo.plan] == [step.action for step in carla.plan]
+
+
+def _position(town: RoadNetwork, segment: str) -> str:
+    """Return the middle of a segment as users write positions."""
+    part = town.segments[segment]
+    x, y, _ = town.lanes[part.lane].centre.pose_at(part.middle)
+    return f"{x:.3f},{y:.3f}"

@@ -1,7 +1,10 @@
 from __future__ import annotations
 
 import math
+import os
 import random
+import subprocess
+import sys
 from collections import Counter
 from pathlib import Path
 
@@ -47,6 +50,13 @@ def test_without_carlas_client_the_extra_and_the_other_way_are_named(
     with pytest.raises(MapError, match=r"tmpud\[carla\].*tmpud map import") as caught:
         read_opendrive(crossroads_file)
     assert "\n" not in str(caught.value)
+
+
+def test_carlas_client_is_never_loaded_into_this_process(town: RoadNetwork) -> None:
+    code = f"import sys, tmpud.roads as r; r.load_map({town.source!r}); print({{'carla', 'numpy'}} & set(sys.modules))"
+    environment = {**os.environ, "TMPUD_NO_CACHE": "1"}
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, env=environment)
+    assert done.stdout.strip() == "set()"
 
 
 def test_a_parser_that_hangs_is_given_up(
