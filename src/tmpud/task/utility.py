@@ -17,6 +17,8 @@ from tmpud.symbols import Action, Cost, Safe, TaskPlan, Transition
 LIMIT = 2**31  # [cm] the solver's integers wrap here
 FORBIDDEN = 1 << 90  # a rank above that of every plan
 FIELD = 20  # [bit] room for the number of merges, and for the number of actions
+TURNS = (Action.TURNLEFT, Action.TURNRIGHT)
+_STRAIGHT = dict.fromkeys(Action, 0.0)
 STEP = {action: (action.is_merge << FIELD) + 1 for action in Action}
 
 
@@ -34,7 +36,7 @@ class Utility:
     def __init__(self, preset: Preset, cost: Cost, safe: Safe, floor: Cost) -> None:
         """Take ``floor`` for a Cost that fell below it [m]; a transition that is not in it has no floor."""
         self._cost, self._safe, self._floor = cost, safe, floor
-        self._turns = {action: turn_cost(action, preset) for action in Action}
+        self._turns = _STRAIGHT | dict.fromkeys(TURNS, preset.turn_cost)
         self._penalties = _Penalties(preset)
 
     def terms(self, transition: Transition) -> Terms:
@@ -77,7 +79,7 @@ def penalty(safe: float, preset: Preset) -> float:
 
 def turn_cost(action: Action, preset: Preset) -> float:
     """Return what is added for an action that is a left or right turn [m]."""
-    return preset.turn_cost if action in (Action.TURNLEFT, Action.TURNRIGHT) else 0.0
+    return preset.turn_cost if action in TURNS else 0.0
 
 
 def centimetres(metres: float, transition: Transition) -> int:
