@@ -1,7 +1,8 @@
 """Large maps that were read before, kept in the user's cache folder by content, so that reading them again is quick.
 
-A file of the cache is a line of JSON, which says what it was made from and by which code, and a line with the network.
-One that is damaged, or another version's, is as good as none. ``TMPUD_NO_CACHE=1`` keeps none.
+A file of the cache is lines of JSON: what it was made from and by which code; the network, some rows at a time, so
+that a city's are never all in memory beside what they become; a digest of all that. One that is damaged, or another
+version's, is as good as none. ``TMPUD_NO_CACHE=1`` keeps none.
 """
 
 from __future__ import annotations
@@ -11,12 +12,13 @@ import hashlib
 import json
 import os
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import fields
-from functools import cache
+from functools import cache, partial
+from itertools import islice
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 from tmpud.geometry import Point, Polyline
 from tmpud.roads.network import Frame, Junction, Lane, LaneConnection, RoadNetwork, SignalProgram
@@ -25,6 +27,8 @@ from tmpud.symbols import Action
 
 LARGE = 2_000  # [lanes] smaller maps are read as quickly as a cache would be
 _CODE = Path(__file__).parent
+_BLOCK = 1_000  # [rows] of a line
+_END = "end"
 
 Row = list[Any]
 
@@ -65,11 +69,8 @@ def read_cached(
 def _kept(place: Path, file: Path, segment_length: float) -> RoadNetwork | None:
     """Return the network that a file of the cache holds, None where it holds none that can be used."""
     try:
-        stamp, _, body = place.read_bytes().partition(b"\n")
-        if json.loads(stamp) != _stamp(place.stem, body):
-            return None
-        with _no_collection():
-            return _network(json.loads(body), file, segment_length)
+        with place.open("rb") as lines, _no_collection():
+            return _network(_blocks(lines, place.stem), file, segment_length)
     except (OSError, ValueError, TypeError, LookupError, RecursionError):
         return None
 
@@ -88,17 +89,39 @@ def _no_collection() -> Iterator[None]:
 
 def _keep(place: Path, network: RoadNetwork) -> None:
     """Write a network into the cache, whole or not at all."""
-    body = json.dumps(_rows(network), separators=(",", ":"), allow_nan=False).encode()
     with suppress(OSError):  # the next time it is read from the net itself
         place.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(dir=place.parent, prefix=".") as folder:
             written = Path(folder) / place.name
-            written.write_bytes(json.dumps(_stamp(place.stem, body)).encode() + b"\n" + body)
+            with written.open("wb") as file:
+                digest = hashlib.sha256()
+                for block in (_stamp(place.stem), *_rows(network)):
+                    line = json.dumps(block, separators=(",", ":"), allow_nan=False).encode() + b"\n"
+                    digest.update(line)
+                    file.write(line)
+                file.write(json.dumps([_END, digest.hexdigest()]).encode() + b"\n")
             written.replace(place)
 
 
-def _stamp(digest: str, body: bytes) -> dict[str, str]:
-    return {"map": digest, "code": _code_digest(), "body": hashlib.sha256(body).hexdigest()}
+def _blocks(lines: BinaryIO, map_digest: str) -> Iterator[tuple[str, list[Row]]]:
+    """Yield the rows of a file of the cache under the names of their kinds; ValueError where it is not whole."""
+    stamp = lines.readline()
+    if json.loads(stamp) != _stamp(map_digest):
+        raise ValueError("made from another map, or by other code")
+    digest = hashlib.sha256(stamp)
+    for line in lines:
+        kind, rows = json.loads(line)
+        if kind == _END:
+            if rows != digest.hexdigest() or lines.read(1):
+                raise ValueError("not what was written")
+            return
+        digest.update(line)
+        yield kind, rows
+    raise ValueError("cut short")
+
+
+def _stamp(map_digest: str) -> dict[str, str]:
+    return {"map": map_digest, "code": _code_digest()}
 
 
 @cache
@@ -108,40 +131,46 @@ def _code_digest() -> str:
     return hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()
 
 
-def _rows(network: RoadNetwork) -> dict[str, Any]:
-    """Return a network in the types of JSON; connections name lanes by their number."""
+def _rows(network: RoadNetwork) -> Iterator[tuple[str, list[Row]]]:
+    """Yield a network in the types of JSON, some rows at a time; connections name lanes by their number."""
     number = {lane: i for i, lane in enumerate(network.lanes)}
-    return {
-        "digest": network.digest,
-        "lanes": [_values(lane, centre=lane.centre.points) for lane in network.lanes.values()],
-        "connections": [
+    yield "map", [[network.digest, _values(network.frame), network.warnings]]
+    kinds = {
+        "lanes": (_values(lane, centre=lane.centre.points) for lane in network.lanes.values()),
+        "connections": (
             _values(each, from_lane=number[each.from_lane], to_lane=number[each.to_lane], path=each.path.points)
             for each in network.connections
-        ],
-        "junctions": [_values(junction) for junction in network.junctions.values()],
-        "signals": [_values(signal) for signal in network.signals.values()],
-        "frame": _values(network.frame),
-        "warnings": network.warnings,
+        ),
+        "junctions": map(_values, network.junctions.values()),
+        "signals": map(_values, network.signals.values()),
     }
+    for kind, rows in kinds.items():
+        while block := list(islice(rows, _BLOCK)):
+            yield kind, block
 
 
 def _values(item: Any, **instead: Any) -> Row:
     return [instead.get(field.name, getattr(item, field.name)) for field in fields(item)]
 
 
-def _network(rows: dict[str, Any], file: Path, segment_length: float) -> RoadNetwork:
-    lanes = [_lane(*row) for row in rows["lanes"]]
-    ids = [lane.id for lane in lanes]
+def _network(blocks: Iterable[tuple[str, list[Row]]], file: Path, segment_length: float) -> RoadNetwork:
+    ids: list[str] = []
+    make: dict[str, Callable[..., Any]] = {**_MADE, "connections": partial(_connection, ids)}
+    found: dict[str, list[Any]] = {kind: [] for kind in make}
+    for kind, rows in blocks:
+        found[kind] += [make[kind](*row) for row in rows]
+        ids += [row[0] for row in rows if kind == "lanes"]
+    ((digest, (offset, projection), warnings),) = found["map"]
     return RoadNetwork(
         name=net_name(file),
-        lanes={lane.id: lane for lane in lanes},
-        connections=tuple(_connection(ids, *row) for row in rows["connections"]),
-        junctions={row[0]: _junction(*row) for row in rows["junctions"]},
-        signals={name: _signal(name, offset, phases) for name, offset, phases in rows["signals"]},
-        frame=Frame((rows["frame"][0][0], rows["frame"][0][1]), rows["frame"][1]),
+        lanes={lane.id: lane for lane in found["lanes"]},
+        connections=tuple(found["connections"]),
+        junctions={junction.id: junction for junction in found["junctions"]},
+        signals={signal.id: signal for signal in found["signals"]},
+        frame=Frame((offset[0], offset[1]), projection),
         source=str(file),
-        digest=rows["digest"],
-        warnings=tuple(rows["warnings"]),
+        digest=digest,
+        warnings=tuple(warnings),
         segment_length=segment_length,
     )
 
@@ -178,3 +207,11 @@ def _signal(name: str, offset: float, phases: Row) -> SignalProgram:
 
 def _points(row: Row) -> tuple[Point, ...]:
     return tuple((x, y) for x, y in row)
+
+
+_MADE: dict[str, Callable[..., Any]] = {
+    "map": lambda *row: row,
+    "lanes": _lane,
+    "junctions": _junction,
+    "signals": _signal,
+}
