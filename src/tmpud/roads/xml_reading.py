@@ -9,8 +9,8 @@ import math
 import re
 import stat
 import zlib
-from collections.abc import Collection, Iterator
-from dataclasses import dataclass, field
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
 from xml.parsers import expat
@@ -34,7 +34,7 @@ class Element:
     attributes: dict[str, str]
     source: str
     line: int
-    children: list[Element] = field(default_factory=list)
+    children: Sequence[Element] = ()  # a list only where there are some: a city has millions without
 
     def error(self, cause: str) -> MapError:
         return MapError(self.source, self.line, f"{self.tag}: {cause}")
@@ -195,7 +195,10 @@ class _TreeBuilder:
             if len(value) < _SHORT:
                 attributes[name] = self._known.setdefault(value, value)
         element = Element(tag, attributes, self._source, line)
-        parent.children.append(element)
+        if isinstance(parent.children, list):
+            parent.children.append(element)
+        else:
+            parent.children = [element]
         self._open.append(element)
 
     def _end(self, _: str) -> None:
