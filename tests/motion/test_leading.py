@@ -102,9 +102,9 @@ def test_a_car_beyond_the_look_ahead_is_not_followed_on_the_straight_line_that_c
 def test_the_first_look_leaves_out_nobody_who_is_in_the_way(route: Route, monkeypatch: pytest.MonkeyPatch) -> None:
     rng = np.random.default_rng(1)
     ego = VehicleState("ego", route.pose_at(0.0), "", speed=5.0)
-    scenes = [Scene(0.0, ego, Vehicles.of([beside(route, rng)]), {}) for _ in range(3000)]
+    scenes = [Scene(0.0, ego, Vehicles.of([beside(route, rng) for _ in range(3)]), {}) for _ in range(3000)]
     found = [leader(scene, route, 0.0) for scene in scenes]
-    monkeypatch.setattr(leading, "_near", lambda scene, _: list(range(len(scene.others))))
+    monkeypatch.setattr(leading, "_near", lambda scene, *_: [(0, box) for box in leading._boxes(scene.others)])
     assert found == [leader(scene, route, 0.0) for scene in scenes]
     assert 300 < sum(one is None for one in found) < 2700
 

@@ -15,7 +15,7 @@ DT = 0.05
 def stops_behind(speed: float, gap: float, leader_speed: float = 0.0, stop: bool = False) -> tuple[float, float]:
     """Drive up to something ahead by the speed planner; return the least gap and the last speed."""
     station, ahead, least = 20.0, 20.0 + gap, gap
-    for _ in range(round(60 / DT)):
+    for _ in range(round(120 / DT)):
         ahead += leader_speed * DT
         room = ahead - station
         obstacles, line = ([], room) if stop else ([Obstacle(room, leader_speed)], None)

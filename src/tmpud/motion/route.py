@@ -60,19 +60,31 @@ class Route:
 
     def project(self, x: float, y: float, near: float | None = None) -> tuple[float, float]:
         """Return (station, offset to the left) of a point [m]; with ``near``, only within 8 m of that station."""
-        here, end, i = 0, len(self.x), 0
+        among = range(len(self.x))
         if near is not None:
-            here, end, i = self.index(near - 8.0), self.index(near + 8.0) + 1, self.index(near)
-        least = math.hypot(x - self.poses[i].x, y - self.poses[i].y)
-        while here < end:
-            distance = math.hypot(x - self.poses[here].x, y - self.poses[here].y)
+            among = among[self.index(near - 8.0) : self.index(near + 8.0) + 1]
+        i = self.nearest(x, y, among, self.index(near or 0.0))
+        along, across = self.beside(x, y, i)
+        return i * SPACING + along, across
+
+    def nearest(self, x: float, y: float, among: range, guess: int) -> int:
+        """Return which of some points that follow each other is nearest to (x, y); the better the guess, the sooner."""
+        poses, nearest = self.poses, guess
+        least = math.hypot(x - poses[guess].x, y - poses[guess].y)
+        i, end = among.start, among.stop
+        while i < end:
+            distance = math.hypot(x - poses[i].x, y - poses[i].y)
             if distance < least:
-                least, i = distance, here
-            here += 1 + int((distance - least) / SPACING)  # those between are no nearer
-        nearest_x, nearest_y, heading = self.poses[i]
-        dx, dy = x - nearest_x, y - nearest_y
-        cos, sin = math.cos(heading), math.sin(heading)
-        return i * SPACING + dx * cos + dy * sin, dy * cos - dx * sin
+                nearest, least = i, distance
+            i += 1 + int((distance - least) / SPACING)  # those between are no nearer
+        return nearest
+
+    def beside(self, x: float, y: float, i: int) -> tuple[float, float]:
+        """Return how far ahead and to the left of the route's i-th point a point is [m]."""
+        place = self.poses[i]
+        dx, dy = x - place.x, y - place.y
+        cos, sin = math.cos(place.heading), math.sin(place.heading)
+        return dx * cos + dy * sin, dy * cos - dx * sin
 
 
 def build_route(
