@@ -81,8 +81,8 @@ def test_carlas_town_has_as_many_lanes_turns_and_lights_by_either_way(tmp_path: 
         assert abs(here.length - lane.length) < 1.0
     for seed in range(5):
         places = [resolve(town, "random", random.Random(seed + end)) for end in (0, 100)]
-        here, there = (_position(town, place.segments[0]) for place in places)
-        carla, sumo = (Problem.of(each.source, here, there).solve() for each in (town, net))
+        start, goal = (_position(town, place.segments[0]) for place in places)
+        carla, sumo = (Problem.of(each.source, start, goal).solve() for each in (town, net))
         assert sumo.cost_m == pytest.approx(carla.cost_m, rel=0.005)
         assert [step.action for step in sumo.plan] == [step.action for step in carla.plan]
 

@@ -28,7 +28,7 @@ def town() -> RoadNetwork:
 
 
 def test_a_network_comes_back_from_json_as_it_was(town: RoadNetwork) -> None:
-    text = json.dumps(to_rows(town), allow_nan=False)
+    text = json.dumps([*to_rows(town)], allow_nan=False)
     assert from_rows(json.loads(text), Path(town.source), town.segment_length) == town
 
 
