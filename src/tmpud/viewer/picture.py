@@ -201,3 +201,9 @@ def _title(header: Header, log: list[Event]) -> str:
     result = f": {end.status}, {end.distance:.0f} m in {end.travel_time:.0f} s, {replans}" if end else ""
     done = sum(isinstance(event, Executed) for event in log)
     return f"{header.map['name']}, {mission['algorithm']}, seed {mission['seed']}{result}, {done} actions"
+
+
+def fitting(text: str, letters: int) -> str:
+    """Return text that fits into a line and has a glyph for each letter."""
+    shown = "".join(letter for letter in text if letter.isprintable()).encode("latin-1", "replace").decode("latin-1")
+    return shown if len(shown) <= letters else shown[: letters - 1] + "…"

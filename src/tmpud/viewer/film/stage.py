@@ -25,7 +25,7 @@ from tmpud.viewer.film.traffic import Traffic
 from tmpud.viewer.ground import stops
 from tmpud.viewer.paths import Outlines
 from tmpud.viewer.picture import CAR as GREY
-from tmpud.viewer.picture import COLOURS, DRIVEN, RISK, ROAD, Area, draw_network
+from tmpud.viewer.picture import COLOURS, DRIVEN, RISK, ROAD, Area, draw_network, fitting
 from tmpud.viewer.reasons import WORDS
 
 Image = NDArray[np.uint8]  # (height, width, 3)
@@ -78,7 +78,7 @@ class Stage:
         self._moving.show_traffic(traffic, telling, _view(centre))
         self._moving.show_lights(traffic, self._stops)
         self._moving.show_plans(self._routes, telling)
-        self._moving.say(_action(telling), _fitting(telling.news, LETTERS), clock, telling)
+        self._moving.say(_action(telling), fitting(telling.news, LETTERS), clock, telling)
         for axes, artist in self._moving.artists:
             axes.draw_artist(artist)
         return np.array(self._canvas.buffer_rgba())[..., :3]
@@ -193,9 +193,3 @@ def _action(telling: Telling) -> str:
     if telling.step is None or telling.safe is None:
         return name
     return f"{name}: {WORDS[telling.step.action][1]}, Safe = {telling.safe:.2f}"
-
-
-def _fitting(text: str, letters: int) -> str:
-    """Return text that fits into a line and has a glyph for each letter."""
-    shown = "".join(letter for letter in text if letter.isprintable()).encode("latin-1", "replace").decode("latin-1")
-    return shown if len(shown) <= letters else shown[: letters - 1] + "…"
