@@ -67,7 +67,7 @@ def write_lines(folder: Path, lines: list[str]) -> None:
 def test_no_damage_to_a_value_ends_in_anything_but_a_page_or_one_line(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("tmpud.viewer.document.load_map", cache(load_map))
+    monkeypatch.setattr("tmpud.viewer.paths.load_map", cache(load_map))
     rows = [to_json(event) for event in events()]
     rng = random.Random(5)
     step = ["a", 0, "forward", "b", 0]

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from tmpud.cli.filming import Cutting, Films, write_films
 from tmpud.cli.options import TOWN, Algorithm, Beta, Journey, Json, Out, Seed, Traffic, grouped
 
 if TYPE_CHECKING:
@@ -39,10 +40,16 @@ def drive(
     traffic: Traffic = 120,
     out: Out = None,
     frames: Annotated[bool, typer.Option(help="Record all traffic ten times a second, for the replay.")] = True,
+    *,
+    films: Films,
     as_json: Json = False,
 ) -> None:
     """Drive one mission in SUMO's traffic. The run is judged and written into a folder."""
     from tmpud.runner import Mission
+
+    if films and not frames:
+        raise typer.BadParameter("an animation needs what --no-frames leaves out.", param_hint="'--no-frames'")
+    films.check()
 
     mission = Mission(
         map=journey.map,
@@ -55,7 +62,7 @@ def drive(
         seed=journey.seed,
         preset=journey.preset,
     )
-    _drive(mission, out or Path("runs") / _name(mission), as_json=as_json, frames=frames)
+    _drive(mission, out or Path("runs") / _name(mission), as_json=as_json, frames=frames, films=films)
 
 
 def _name(mission: Mission) -> str:
@@ -65,7 +72,7 @@ def _name(mission: Mission) -> str:
     return re.sub("[^a-z0-9._]+", "-", words)[-64:].lstrip("._-")
 
 
-def _drive(mission: Mission, folder: Path, *, as_json: bool, frames: bool = True) -> None:
+def _drive(mission: Mission, folder: Path, *, as_json: bool, frames: bool = True, films: Films | None = None) -> None:
     from tmpud.events import Event
     from tmpud.execution.timing import Stopwatch
     from tmpud.presets import preset_named
@@ -73,6 +80,7 @@ def _drive(mission: Mission, folder: Path, *, as_json: bool, frames: bool = True
     from tmpud.roads.loading import load_map
     from tmpud.runner import drive as run
     from tmpud.story import Story, summarise
+    from tmpud.viewer.intact import read_intact
     from tmpud.viewer.picture import draw_run
 
     watch, story = Stopwatch(), Story()
@@ -86,6 +94,8 @@ def _drive(mission: Mission, folder: Path, *, as_json: bool, frames: bool = True
     draw_run(load_map(mission.map, preset_named(mission.preset).segment_length), events, folder / PICTURE)
     summary = summarise(events) | {"latency_ms": watch.summary()}
     _report(summary, folder, as_json=as_json)
+    if films:
+        write_films(read_intact(folder), films, Cutting())
     if summary["status"] != "SUCCESS":
         raise typer.Exit(1)
 

@@ -7,15 +7,32 @@ from typing import Annotated
 
 import typer
 
+from tmpud.cli.filming import Cutting, Films, write_films
+from tmpud.cli.options import grouped
+
 app = typer.Typer()
 
 
 @app.command()
+@grouped
 def replay(
     run: Annotated[Path, typer.Argument(help="A run folder, such as runs/demo.")],
     html: Annotated[Path | None, typer.Option(help="The page to write; default: replay.html in the folder.")] = None,
+    *,
+    films: Films,
+    cutting: Cutting,
 ) -> None:
-    """Write one HTML page that plays a run. Open it in a browser, send it to somebody."""
+    """Write one HTML page that plays a run. Open it in a browser, send it to somebody. Or write an animation."""
+    if films:
+        from tmpud.viewer.intact import read_intact
+
+        films.check()
+        write_films(read_intact(run), films, cutting)
+    if html or not films:
+        _write_page(run, html)
+
+
+def _write_page(run: Path, html: Path | None) -> None:
     from tmpud.recording import REPLAY
     from tmpud.viewer.replay import write_replay
 

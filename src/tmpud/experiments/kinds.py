@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,7 @@ import numpy as np
 from tmpud.errors import RunFileError
 from tmpud.experiments.reports.analysis import Analysis, analyse, report
 from tmpud.experiments.reports.document import Picture, Report
-from tmpud.experiments.running.store import Results, provenance
+from tmpud.experiments.running.store import Results, provenance, read_results
 from tmpud.experiments.running.tasks import Record, results_hash
 from tmpud.experiments.statistics.paper_numbers import FIGURE4, TABLE1, Reference
 from tmpud.experiments.statistics.rows import TrialRow
@@ -88,6 +89,12 @@ class Findings:
             deviations=self.kind.deviations(self.results.records),
         )
 
+    def _repr_html_(self) -> str:
+        """Return the tables and the picture for a notebook."""
+        from tmpud.experiments.reports.document import render
+
+        return render("sections.html", self.report())
+
     def picture(self) -> Picture:
         """Draw mean distance against unsafe trials, a panel per condition."""
         from tmpud.experiments.reports.charts import batch_panels, draw, interval_panels
@@ -95,6 +102,11 @@ class Findings:
         panels = batch_panels(self.analysis.pairs) if self.kind.batches else interval_panels(self.analysis.cells)
         bars = "one standard deviation over the batches" if self.kind.batches else "95 % intervals"
         return draw(panels, self.kind.reference, "figure", f"Distance against unsafe trials; bars: {bars}.")
+
+
+def read_findings(folder: str | Path) -> Findings:
+    """Return what an experiment's folder says; raises RunFileError."""
+    return findings(read_results(Path(folder)))
 
 
 def findings(results: Results) -> Findings:

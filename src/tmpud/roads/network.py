@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from tmpud.geometry import Point, Polyline
+from tmpud.showing import ShownAsSvg
 from tmpud.symbols import Action
 
 SEGMENT_LENGTH = 60.0  # [m]
@@ -109,7 +110,7 @@ class Frame:
 
 
 @dataclass(slots=True)
-class RoadNetwork:
+class RoadNetwork(ShownAsSvg):
     """Lanes, lane segments, connections, junctions and signals of one map. Not changed after it is built."""
 
     name: str

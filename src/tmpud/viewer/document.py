@@ -11,18 +11,14 @@ from collections.abc import Iterable
 from typing import Any
 
 from tmpud.dynamics import EGO
-from tmpud.errors import TmpudError
 from tmpud.events import Estimated, Executed, Finished, Judged, Planned
-from tmpud.presets import preset_named
-from tmpud.roads.loading import load_map
-from tmpud.roads.network import RoadNetwork
 from tmpud.story import plan_name
 from tmpud.symbols import TaskPlan, Transition
 from tmpud.viewer.changes import changes
 from tmpud.viewer.ground import ground, line
 from tmpud.viewer.intact import Intact
 from tmpud.viewer.memory import preset_of
-from tmpud.viewer.paths import mapping_of, plan_outline
+from tmpud.viewer.paths import Outlines
 from tmpud.viewer.reasons import Change
 from tmpud.viewer.sets import control_ranges, planes, predicted
 from tmpud.viewer.traffic import columns
@@ -34,8 +30,8 @@ TOLD = ("map", "start", "goal", "via", "algorithm", "beta", "traffic", "seed", "
 
 def replay_document(run: Intact) -> dict[str, Any]:
     """Return the document of a run, and add to its ``missing`` what cannot be shown."""
-    network = _network(run)
-    steps = _Steps(network, run)
+    outlines = Outlines(run)
+    network, steps = outlines.network, _Steps(outlines)
     plans = [event for event in run.events if isinstance(event, Planned)]
     document = {
         "schema": SCHEMA,
@@ -58,48 +54,27 @@ def replay_document(run: Intact) -> dict[str, Any]:
 class _Steps:
     """Numbers transitions in the order in which they are first met; each has a row [action, from, to, leg, path]."""
 
-    def __init__(self, network: RoadNetwork | None, run: Intact) -> None:
+    def __init__(self, outlines: Outlines) -> None:
         self.rows: list[list[Any]] = []
         self._numbers: dict[Transition, int] = {}
-        self._network = network
-        try:
-            self._mapping = mapping_of(network, run.header) if network else None
-        except (TmpudError, KeyError, TypeError, ValueError):
-            self._mapping = None
-            run.missing.append("the request in the header cannot be read, so no plan is drawn on the map")
+        self._outlines = outlines
 
     def __call__(self, step: Transition) -> int:
         if step not in self._numbers:
             self._numbers[step] = len(self.rows)
             self.rows.append(
-                [step.action, step.state.segment, step.next_state.segment, step.state.leg, self._path(step)]
+                [
+                    step.action,
+                    step.state.segment,
+                    step.next_state.segment,
+                    step.state.leg,
+                    line(self._outlines((step,))),
+                ]
             )
         return self._numbers[step]
 
     def all(self, plan: TaskPlan) -> list[int]:
         return [self(step) for step in plan]
-
-    def _path(self, step: Transition) -> list[int]:
-        network = self._network
-        if network is None or self._mapping is None:
-            return []
-        if not {step.state.segment, step.next_state.segment} <= network.segments.keys():
-            return []
-        return line(plan_outline(network, self._mapping, (step,)))
-
-
-def _network(run: Intact) -> RoadNetwork | None:
-    """Return the map a run was driven on, None where it is not there any more or is another one."""
-    mission, town = run.header.mission, run.header.map
-    try:
-        network = load_map(str(mission["map"]), preset_named(str(mission["preset"])).segment_length)
-    except (TmpudError, OSError, KeyError, ValueError) as error:
-        run.missing.append(f"the map cannot be read, so no roads are drawn: {error}")
-        return None
-    if network.digest != town.get("digest"):
-        run.missing.append(f"{mission['map']} is not the map it was when this was driven, so no roads are drawn")
-        return None
-    return network
 
 
 def _changes(run: Intact) -> list[Change]:

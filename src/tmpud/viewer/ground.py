@@ -18,7 +18,7 @@ def ground(network: RoadNetwork) -> dict[str, Any]:
     return {
         "lanes": [_lane(network, name) for name in network.lanes],
         "junctions": [line(junction.shape) for junction in network.junctions.values() if len(junction.shape) > 2],
-        "stops": [stop for name in network.lanes for stop in _stops(network, name)],
+        "stops": [stop for name in network.lanes for stop in stops(network, name)],
     }
 
 
@@ -36,7 +36,7 @@ def _lane(network: RoadNetwork, name: str) -> list[Any]:
     return [round(lane.width * 100), *beside, line(lane.centre.points)]
 
 
-def _stops(network: RoadNetwork, name: str) -> list[list[Any]]:
+def stops(network: RoadNetwork, name: str) -> list[list[Any]]:
     """Return the pieces of a lane's stop line, from the left: light, its letters' places, ends [cm].
 
     A piece stands for all connections of one action; lanes that no light controls have none.
