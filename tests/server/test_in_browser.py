@@ -114,14 +114,17 @@ def test_a_point_of_a_report_leads_to_its_row(tmp_path: Path) -> None:
     found = findings(read_results(made_results(tmp_path / "sweep")))
     write_report(tmp_path / "sweep", found.report())
     shade = "(rows) => rows.map(row => getComputedStyle(row.cells[1]).backgroundColor)"
-    with served(tmp_path) as server, browsing(server) as page:
-        page.goto(f"{server.url}{server.link(f'{tmp_path.name}/sweep')}/report")
-        rows = page.locator("tr[id]")
+    with served(tmp_path) as server, browsing(server, "report.html") as page:
+        page.goto((tmp_path / "sweep" / "report.html").as_uri())
+        rows, links = page.locator("tr[id]"), page.locator("figure a")
         plain = rows.evaluate_all(shade)
         for number, cell in enumerate(found.analysis.cells):
-            link = page.locator(f"figure a[*|href='#{anchor(cell.condition, cell.algorithm)}']")
-            assert f"{cell.per_1000.value:.1f} unsafe" in link.locator("title").inner_text()
-            link.press("Enter")
-            assert page.url.endswith(f"#{anchor(cell.condition, cell.algorithm)}")
-            changed = [was != now for was, now in zip(plain, rows.evaluate_all(shade), strict=True)]
-            assert changed == [other == number for other in range(len(plain))]
+            place = f"#{anchor(cell.condition, cell.algorithm)}"
+            (link,) = [link for link in links.all() if link.get_attribute("xlink:href") == place]
+            assert f"{cell.per_1000.value:.1f} unsafe" in str(link.locator("title").text_content())
+            for act in (link.focus, lambda link=link: link.press("Enter")):
+                act()
+                changed = [was != now for was, now in zip(plain, rows.evaluate_all(shade), strict=True)]
+                assert changed[number]
+            assert page.url.endswith(place)
+            assert sum(changed) == 1
