@@ -7,7 +7,7 @@ some frames: an empty one, which shows what the browser itself can do; the repla
 following it; the replay playing with the whole town in view. A frame time is the time between two calls of
 ``requestAnimationFrame``, measured in the page. A second table has the time that the page's own script spent on
 drawing each frame, which is less than the frame: the browser draws what it was told afterwards. The browser shows at
-most 60 pictures a second, so that a frame takes 16.7 ms or a multiple; ``--unbound`` lets it show as many as it can.
+most 60 pictures a second, so that a frame takes 16.7 ms or a multiple.
 """
 
 from __future__ import annotations
@@ -34,7 +34,6 @@ EMPTY, FOLLOWED, TOWN = "an empty page", "following the car", "the whole town"
 KEYS = {FOLLOWED: "f", TOWN: "w"}
 WIDTH, HEIGHT = 1360, 860  # [px]
 BY_SOFTWARE = ("--disable-gpu",)
-UNBOUND = ("--disable-frame-rate-limit", "--disable-gpu-vsync")
 MEASURE = """frames => new Promise(done => {
     const times = [];
     let before = null;
@@ -53,7 +52,6 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--frames", type=int, default=150, help="of a turn")
     parser.add_argument("--rounds", type=int, default=4)
     parser.add_argument("--seed", type=int, default=16)
-    parser.add_argument("--unbound", action="store_true", help="as many pictures as there can be, not 60 a second")
 
 
 def measure(asked: argparse.Namespace) -> list[Result]:
@@ -61,7 +59,7 @@ def measure(asked: argparse.Namespace) -> list[Result]:
     browser = shutil.which("chromium")
     if browser is None:
         raise SkipError("Chromium is not installed")
-    with tempfile.TemporaryDirectory() as folder, _opened(browser, unbound=asked.unbound) as opened:
+    with tempfile.TemporaryDirectory() as folder, _opened(browser) as opened:
         run = asked.run or _driven(asked, Path(folder) / "run")
         write_replay(run, Path(folder) / "replay.html")
         frames, drawn = _turns(opened, Path(folder) / "replay.html", asked)
@@ -83,12 +81,11 @@ def _driven(asked: argparse.Namespace, run: Path) -> Path:
 
 
 @contextmanager
-def _opened(chromium: str, *, unbound: bool) -> Iterator[Browser]:
+def _opened(chromium: str) -> Iterator[Browser]:
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as browsers:
-        words = [*BY_SOFTWARE, *(UNBOUND if unbound else ())]
-        browser = browsers.chromium.launch(executable_path=chromium, args=words)
+        browser = browsers.chromium.launch(executable_path=chromium, args=list(BY_SOFTWARE))
         yield browser
         browser.close()
 

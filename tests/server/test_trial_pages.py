@@ -14,11 +14,13 @@ from tests.server.asking import Served, served
 from tests.server.test_pages import OURS, shown, text_of
 from tests.viewer.hostile import NAMES
 from tests.viewer.made_runs import header, recorded
+from tmpud.experiments.again import drive_again, trial_of
 from tmpud.experiments.kinds import findings
 from tmpud.experiments.running.manifest import Experiment
 from tmpud.experiments.running.store import Store, read_results
 from tmpud.experiments.running.tasks import DONE, SIM_CRASH, Record
 from tmpud.experiments.trials.figure4 import Figure4
+from tmpud.experiments.trials.full import summary
 from tmpud.experiments.trials.grid import Grid, Route
 
 DRAWN = {"figure", "figcaption", "svg", "g", "path", "text", "circle", "br", "nav", "b"}
@@ -103,6 +105,18 @@ def test_a_trial_is_driven_again_once_and_what_differs_is_said(tmp_path: Path, c
             logs.add((folder / "run.jsonl.gz").stat().st_mtime_ns)
     assert len(logs) == 1  # the second server found it in the cache
     assert {file: file.read_bytes() for file in sweep.iterdir()} == before
+
+
+def test_a_trial_that_comes_out_as_it_was_kept_is_the_same(tmp_path: Path) -> None:
+    trial = trial_of(read_results(made_results(tmp_path / "first", SHORT)), "few/00000/tmpud")
+    kept = summary(drive_again(trial, tmp_path / "run"))
+    made_results(tmp_path / "sweeps" / "one", SHORT, lambda _: kept)
+    with served(tmp_path / "sweeps") as server:
+        link = server.link("sweeps/one")
+        row = re.findall(r"\.\./trials/(\w+)", server.ask(f"{link}/points/0").text)[0]
+        part = driven(server, f"{link}/trials/{row}")
+        assert "unsafe moments and all else that was kept of it are the same" in part
+        assert "not the same" not in part
 
 
 def test_abstract_trials_are_listed_and_have_no_replay(tmp_path: Path) -> None:
