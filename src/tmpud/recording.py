@@ -21,6 +21,11 @@ REPLAY = "replay.html"
 NAME = re.compile(r"[a-z0-9][a-z0-9._-]{0,63}")
 
 
+def run_name(words: str) -> str:
+    """Return a name for a run folder that tells what words tell."""
+    return re.sub("[^a-z0-9._]+", "-", words.lower())[-64:].lstrip("._-")
+
+
 def record(events: Iterator[Event], folder: Path) -> Iterator[Event]:
     """Write every event into a run folder while passing it on; what was written stays if the run breaks off.
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -67,9 +66,10 @@ def drive(
 
 def _name(mission: Mission) -> str:
     """Return what a mission's run folder is called where its user does not say."""
+    from tmpud.recording import run_name
+
     town = Path(mission.map).name.split(".")[0]
-    words = f"{town}-{mission.preset}-{mission.algorithm}-{mission.seed}".lower()
-    return re.sub("[^a-z0-9._]+", "-", words)[-64:].lstrip("._-")
+    return run_name(f"{town}-{mission.preset}-{mission.algorithm}-{mission.seed}")
 
 
 def _drive(mission: Mission, folder: Path, *, as_json: bool, frames: bool = True, films: Films | None = None) -> None:

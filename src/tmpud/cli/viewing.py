@@ -16,13 +16,19 @@ app = typer.Typer()
 @app.command()
 @grouped
 def replay(
-    run: Annotated[Path, typer.Argument(help="A run folder, such as runs/demo.")],
+    run: Annotated[Path, typer.Argument(help="A run folder, such as runs/demo; with --trial, a results folder.")],
     html: Annotated[Path | None, typer.Option(help="The page to write; default: replay.html in the folder.")] = None,
+    trial: Annotated[
+        str | None,
+        typer.Option(metavar="KEY", help="A trial to drive again, such as heavy/00017/tmpud, into a folder in runs."),
+    ] = None,
     *,
     films: Films,
     cutting: Cutting,
 ) -> None:
     """Write one HTML page that plays a run. Open it in a browser, send it to somebody. Or write an animation."""
+    if trial:
+        run = _driven_again(run, trial)
     if films:
         from tmpud.viewer.intact import read_intact
 
@@ -40,6 +46,25 @@ def _write_page(run: Path, html: Path | None) -> None:
     for line in write_replay(run, file):
         typer.echo(f"missing: {line}", err=True)
     typer.echo(f"wrote {file} ({file.stat().st_size / 1e3:,.0f} kB)")
+
+
+def _driven_again(results: Path, key: str) -> Path:
+    """Drive a trial again; return its run folder."""
+    from tmpud.events import Frame
+    from tmpud.experiments.again import caveats, differences, drive_again, trial_of
+    from tmpud.experiments.running.store import read_results
+    from tmpud.recording import run_name
+
+    found = read_results(results)
+    trial = trial_of(found, key)
+    folder = Path("runs") / run_name(f"{results.resolve().name}-{key}")
+    log = [event for event in drive_again(trial, folder) if not isinstance(event, Frame)]
+    if different := differences(trial, log):
+        for line in [*different, *caveats(found)]:
+            typer.echo(f"not the same as what was kept: {line}", err=True)
+    else:
+        typer.echo(f"drove {key} again into {folder}: all that was kept of it is the same")
+    return folder
 
 
 @app.command()

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -18,9 +18,12 @@ from tmpud.experiments.statistics.paper_numbers import FIGURE4, TABLE1, Referenc
 from tmpud.experiments.statistics.rows import TrialRow
 from tmpud.experiments.trials.figure4 import Figure4
 from tmpud.experiments.trials.figure4 import deviations as figure4_deviations
-from tmpud.experiments.trials.grid import Grid
+from tmpud.experiments.trials.grid import Cell, Grid, cells
 from tmpud.experiments.trials.grid import rows as grid_rows
 from tmpud.experiments.trials.table1 import DEVIATIONS as TABLE1_DEVIATIONS
+
+if TYPE_CHECKING:
+    from tmpud.experiments.reports.charts import Panel
 
 RESAMPLING_SEED = 1
 Rows = Callable[[Mapping[str, Any], Iterable[Record]], Iterable[TrialRow]]
@@ -33,6 +36,7 @@ class Kind:
     title: str
     rows: Rows  # of the manifest's options and the records
     reference: Reference
+    cells: Callable[[Mapping[str, Any]], list[Cell]] | None = None  # of the options, where it was driven in traffic
     batches: bool = False  # whether bars show the spread over batches, as in the paper's figure
     deviations: Callable[[Iterable[Record]], Sequence[str]] = lambda _: ()
 
@@ -41,13 +45,21 @@ def _of_grid(options: Mapping[str, Any], records: Iterable[Record]) -> Iterable[
     return grid_rows(Grid.from_json(options), records)
 
 
+def _cells(options: Mapping[str, Any]) -> list[Cell]:
+    return cells(Grid.from_json(options))
+
+
 def _of_figure(options: Mapping[str, Any], records: Iterable[Record]) -> Iterable[TrialRow]:
     return Figure4.from_json(options).rows(records)
 
 
 KINDS = {
     "table1": Kind(
-        title="Full simulation: Table I", rows=_of_grid, reference=TABLE1, deviations=lambda _: TABLE1_DEVIATIONS
+        title="Full simulation: Table I",
+        rows=_of_grid,
+        cells=_cells,
+        reference=TABLE1,
+        deviations=lambda _: TABLE1_DEVIATIONS,
     ),
     "figure4": Kind(
         title="Abstract simulation: the paper's figure",
@@ -56,7 +68,7 @@ KINDS = {
         batches=True,
         deviations=figure4_deviations,
     ),
-    "sweep": Kind(title="A sweep in full simulation", rows=_of_grid, reference={}),
+    "sweep": Kind(title="A sweep in full simulation", rows=_of_grid, cells=_cells, reference={}),
 }
 
 
@@ -95,13 +107,23 @@ class Findings:
 
         return render("sections.html", self.report())
 
-    def picture(self) -> Picture:
-        """Draw mean distance against unsafe trials, a panel per condition."""
-        from tmpud.experiments.reports.charts import batch_panels, draw, interval_panels
+    @property
+    def bars(self) -> str:
+        """What the bars of a picture show."""
+        return "one standard deviation over the batches" if self.kind.batches else "95 % intervals"
 
-        panels = batch_panels(self.analysis.pairs) if self.kind.batches else interval_panels(self.analysis.cells)
-        bars = "one standard deviation over the batches" if self.kind.batches else "95 % intervals"
-        return draw(panels, self.kind.reference, "figure", f"Distance against unsafe trials; bars: {bars}.")
+    def panels(self) -> tuple[Panel, ...]:
+        """Return mean distance against unsafe trials, a panel per condition, points in the order of the cells."""
+        from tmpud.experiments.reports.charts import batch_panels, interval_panels
+
+        return batch_panels(self.analysis.pairs) if self.kind.batches else interval_panels(self.analysis.cells)
+
+    def picture(self) -> Picture:
+        """Draw the panels."""
+        from tmpud.experiments.reports.charts import draw
+
+        caption = f"Distance against unsafe trials; bars: {self.bars}."
+        return draw(self.panels(), self.kind.reference, "figure", caption)
 
 
 def read_findings(folder: str | Path) -> Findings:
