@@ -17,7 +17,14 @@ app = typer.Typer()
 @grouped
 def replay(
     run: Annotated[Path, typer.Argument(help="A run folder, such as runs/demo; with --trial, a results folder.")],
-    html: Annotated[Path | None, typer.Option(help="The page to write; default: replay.html in the folder.")] = None,
+    other: Annotated[
+        Path | None,
+        typer.Option("--with", help="A second run on the same map, to be played beside the first, in step."),
+    ] = None,
+    html: Annotated[
+        Path | None,
+        typer.Option(help="The page to write; default: replay.html in the folder, compare.html for two runs."),
+    ] = None,
     trial: Annotated[
         str | None,
         typer.Option(metavar="KEY", help="A trial to drive again, such as heavy/00017/tmpud, into a folder in runs."),
@@ -26,24 +33,25 @@ def replay(
     films: Films,
     cutting: Cutting,
 ) -> None:
-    """Write one HTML page that plays a run. Open it in a browser, send it to somebody. Or write an animation."""
+    """Write one HTML page that plays a run, or compares two; open it in a browser, send it. Or write an animation."""
+    if films:
+        films.check()
     if trial:
         run = _driven_again(run, trial)
     if films:
         from tmpud.viewer.intact import read_intact
 
-        films.check()
         write_films(read_intact(run), films, cutting)
-    if html or not films:
-        _write_page(run, html)
+    if html or other or not films:
+        _write_page(run, other, html)
 
 
-def _write_page(run: Path, html: Path | None) -> None:
-    from tmpud.recording import REPLAY
-    from tmpud.viewer.replay import write_replay
+def _write_page(run: Path, other: Path | None, html: Path | None) -> None:
+    from tmpud.recording import COMPARISON, REPLAY
+    from tmpud.viewer.replay import write_comparison, write_replay
 
-    file = html or run / REPLAY
-    for line in write_replay(run, file):
+    file = html or run / (COMPARISON if other else REPLAY)
+    for line in write_comparison(run, other, file) if other else write_replay(run, file):
         typer.echo(f"missing: {line}", err=True)
     typer.echo(f"wrote {file} ({file.stat().st_size / 1e3:,.0f} kB)")
 

@@ -124,6 +124,7 @@ class RoadNetwork(ShownAsSvg):
     warnings: tuple[str, ...] = ()
     parts: Mapping[str, str] = field(default_factory=dict)  # the source's id of a part of a lane -> the lane
     segment_length: float = SEGMENT_LENGTH  # [m] longest segment; inf: one per lane
+    street_names: Mapping[str, str] = field(default_factory=dict)  # edge -> what its signs say, where it is known
     segments: dict[str, Segment] = field(init=False)
     edges: dict[str, tuple[str, ...]] = field(init=False)  # edge -> its lanes, rightmost first
     internal: dict[str, int] = field(init=False)  # lane through a junction -> index of its connection

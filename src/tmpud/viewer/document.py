@@ -1,4 +1,4 @@
-"""A run as one JSON document, all that the replay's page is told. Schema 2.
+"""A run as one JSON document, all that the replay's page is told. Schema 3.
 
 Times are whole milliseconds of simulated time, places whole centimetres, headings whole milliradians; lengths of
 plans are metres, coefficients of safe control sets SI units.
@@ -23,7 +23,7 @@ from tmpud.viewer.reasons import Change
 from tmpud.viewer.sets import control_ranges, planes, predicted
 from tmpud.viewer.traffic import columns
 
-SCHEMA = 2
+SCHEMA = 3
 CAR = (5.0, 1.8)  # [m] length and width of SUMO's usual car: the log holds no sizes
 TOLD = ("map", "start", "goal", "via", "algorithm", "beta", "traffic", "seed", "preset")
 
@@ -43,7 +43,7 @@ def replay_document(run: Intact) -> dict[str, Any]:
         "controls": _controls(run),
         "plans": [_planned(event, number, steps) for number, event in enumerate(plans)],
         "estimates": [_estimated(event, steps) for event in run.events if isinstance(event, Estimated)],
-        "executed": [_executed(event, steps) for event in run.events if isinstance(event, Executed)],
+        "executed": [_executed(event) for event in run.events if isinstance(event, Executed)],
         "judged": [_judged(event) for event in run.events if isinstance(event, Judged)],
         "changes": [_change(change, steps) for change in _changes(run)],
         "finished": next((_finished(event) for event in run.events if isinstance(event, Finished)), None),
@@ -52,7 +52,7 @@ def replay_document(run: Intact) -> dict[str, Any]:
 
 
 class _Steps:
-    """Numbers transitions in the order in which they are first met; each has a row [action, from, to, leg, path]."""
+    """Numbers transitions in the order in which they are first met; each has a row [action, from, path]."""
 
     def __init__(self, outlines: Outlines) -> None:
         self.rows: list[list[Any]] = []
@@ -62,15 +62,7 @@ class _Steps:
     def __call__(self, step: Transition) -> int:
         if step not in self._numbers:
             self._numbers[step] = len(self.rows)
-            self.rows.append(
-                [
-                    step.action,
-                    step.state.segment,
-                    step.next_state.segment,
-                    step.state.leg,
-                    line(self._outlines((step,))),
-                ]
-            )
+            self.rows.append([step.action, step.state.segment, line(self._outlines((step,)))])
         return self._numbers[step]
 
     def all(self, plan: TaskPlan) -> list[int]:
@@ -96,8 +88,7 @@ def _controls(run: Intact) -> dict[str, Any] | None:
 def _planned(event: Planned, number: int, steps: _Steps) -> dict[str, Any]:
     return {
         "name": plan_name(number),
-        "time": _ms(event.time),
-        "reason": event.reason,
+        "time": milliseconds(event.time),
         "steps": steps.all(event.plan),
         "cost": _metres(event.cost),
         "penalty": _metres(event.penalty),
@@ -106,36 +97,31 @@ def _planned(event: Planned, number: int, steps: _Steps) -> dict[str, Any]:
 
 def _estimated(event: Estimated, steps: _Steps) -> dict[str, Any]:
     return {
-        "time": _ms(event.time),
+        "time": milliseconds(event.time),
         "step": steps(event.step),
         "safe": event.safe,
         "worst": event.worst,
         "ids": event.ids,
         "o": [[round(value, 3) for value in row] for row in event.o],
-        "instants": [_ms(row[0]) for row in event.trajectory],
+        "instants": [milliseconds(row[0]) for row in event.trajectory],
         "path": line((x, y) for _, x, y, _ in event.trajectory),
         "planes": planes(event),
         "others": predicted(event),
     }
 
 
-def _executed(event: Executed, steps: _Steps) -> dict[str, Any]:
-    return {
-        "time": _ms(event.time),
-        "step": steps(event.step),
-        "outcome": event.outcome,
-        "distance": round(event.distance, 2),
-    }
+def _executed(event: Executed) -> dict[str, Any]:
+    return {"time": milliseconds(event.time), "outcome": event.outcome}
 
 
 def _judged(event: Judged) -> dict[str, Any]:
     words = {name: getattr(event, name) for name in ("kind", "vehicle", "rule", "blame", "detail")}
-    return {"time": _ms(event.time), **words}
+    return {"time": milliseconds(event.time), **words}
 
 
 def _finished(event: Finished) -> dict[str, Any]:
-    words = {name: getattr(event, name) for name in ("status", "message", "distance", "travel_time", "replans")}
-    return {"time": _ms(event.time), **words}
+    words = {name: getattr(event, name) for name in ("status", "message", "distance")}
+    return {"time": milliseconds(event.time), **words}
 
 
 def _change(change: Change, steps: _Steps) -> dict[str, Any]:
@@ -143,11 +129,11 @@ def _change(change: Change, steps: _Steps) -> dict[str, Any]:
         {
             "steps": steps.all(candidate.plan),
             "role": candidate.role,
-            "length": _metre(candidate.length),
+            "length": metre(candidate.length),
             "turns": candidate.turns,
-            "before": _metre(candidate.before),
-            "after": _metre(candidate.after),
-            "total": _metre(candidate.total),
+            "before": metre(candidate.before),
+            "after": metre(candidate.after),
+            "total": metre(candidate.total),
         }
         for candidate in change.candidates
     ]
@@ -163,15 +149,15 @@ def _shown(value: Any) -> Any:
     return value if isinstance(value, str | int) or (isinstance(value, float) and math.isfinite(value)) else None
 
 
-def _ms(seconds: float) -> int:
+def milliseconds(seconds: float) -> int:
     return round(seconds * 1000)
 
 
 def _metres(values: Iterable[Any]) -> list[float | None]:
-    return [_metre(value) for value in values]
+    return [metre(value) for value in values]
 
 
-def _metre(value: Any) -> float | None:
+def metre(value: Any) -> float | None:
     """Return a length rounded to millimetres [m], None where there is none or it is not finite."""
     number = math.inf if value is None else float(value)
     return round(number, 3) if math.isfinite(number) else None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import chain, groupby, pairwise
 from typing import Any
 
@@ -14,9 +14,11 @@ _LEFT_TO_RIGHT = (Action.TURNLEFT, Action.FORWARD, Action.TURNRIGHT)
 
 
 def ground(network: RoadNetwork) -> dict[str, Any]:
-    """Return lanes, junctions and what stands at the stop lines."""
+    """Return edges with their streets' names, lanes, junctions and what stands at the stop lines."""
+    numbers = {edge: number for number, edge in enumerate(network.edges)}
     return {
-        "lanes": [_lane(network, name) for name in network.lanes],
+        "edges": [[edge, network.street_names.get(edge, "")] for edge in network.edges],
+        "lanes": [_lane(network, name, numbers) for name in network.lanes],
         "junctions": [line(junction.shape) for junction in network.junctions.values() if len(junction.shape) > 2],
         "stops": [stop for name in network.lanes for stop in stops(network, name)],
     }
@@ -29,11 +31,11 @@ def line(points: Iterable[Point]) -> list[int]:
     return list(chain(whole[0], *steps)) if whole else []
 
 
-def _lane(network: RoadNetwork, name: str) -> list[Any]:
-    """Return width [cm], whether a lane of the same road lies to its left and to its right, and the centre line."""
+def _lane(network: RoadNetwork, name: str, edges: Mapping[str, int]) -> list[Any]:
+    """Return id, edge's number, width [cm], whether a lane of the road lies to its left and right, and the centre."""
     lane = network.lanes[name]
     beside = [int(network.neighbour(name, side) is not None) for side in (Action.MERGELEFT, Action.MERGERIGHT)]
-    return [round(lane.width * 100), *beside, line(lane.centre.points)]
+    return [name, edges[lane.edge], round(lane.width * 100), *beside, line(lane.centre.points)]
 
 
 def stops(network: RoadNetwork, name: str) -> list[list[Any]]:
