@@ -13,15 +13,8 @@ import pytest
 README = (Path(__file__).resolve().parents[2] / "README.md").read_text()
 BIN = Path(sys.executable).parent
 COMMANDS = re.findall(r"^\.venv/bin/(tmpud .*)$", README, re.MULTILINE)
-LONG_NAMES = (
-    "paper",
-    "learn-world",
-    "results",
-    "replay",
-    "export",
-    "view",
-)  # long, in need of a result, or without an end
-LONG = [command for command in COMMANDS if command.split()[1] in LONG_NAMES]
+LONG_NAMES = {"paper", "learn-world", "results", "replay", "export", "view"}  # in need of a result, or without an end
+LONG = [command for command in COMMANDS if command.split()[1] in LONG_NAMES or ".xodr" in command]
 
 
 @pytest.mark.parametrize("command", [command for command in COMMANDS if command not in LONG])
@@ -34,9 +27,9 @@ def test_a_command_runs(command: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("command", LONG)
-def test_an_experiment_has_the_options_it_is_told_with(command: str) -> None:
+def test_what_takes_long_or_needs_files_has_the_options_it_is_told_with(command: str) -> None:
     words = shlex.split(command, comments=True)
-    names = words[1:3] if words[1] == "paper" else words[1:2]
+    names = words[1:3] if words[1] in ("paper", "map") else words[1:2]
     told = subprocess.run([BIN / "tmpud", *names, "--help"], capture_output=True, text=True, check=True).stdout
     assert all(word in told for word in words if word.startswith("--"))
 
