@@ -33,6 +33,11 @@ class Loopback:
         """Let something go wrong; frames count from now."""
         self._ask("loopback_arm", faults)
 
+    def park(self, x: float, y: float, yaw: float) -> int:
+        """Put a car on the road that is none of the client's; CARLA's coordinates."""
+        actor: int = self._ask("loopback_park", x, y, yaw)
+        return actor
+
     def _ask(self, name: str, *arguments: object) -> Any:
         with socket.create_connection(("127.0.0.1", self.port), 5.0) as connection:
             connection.sendall(msgpack.packb([0, 1, name, [[False], *arguments]]))

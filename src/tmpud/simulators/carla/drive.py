@@ -74,7 +74,6 @@ class Drive:
         """Leave the server as it was found; return how many of our actors are left. Each part is tried."""
         left: list[int] = []
         with contextlib.ExitStack() as last_to_first:
-            last_to_first.callback(self._traffic.shut_down)
             last_to_first.callback(lambda: left.append(self._server.leave()))
             last_to_first.callback(self._traffic.end)
             if self._ego:

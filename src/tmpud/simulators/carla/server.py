@@ -33,9 +33,11 @@ class Server:
         client.set_timeout(patience)
         self.found = as_words(self.world.get_settings())  # what to leave behind
         self.ours: set[int] = set()  # ids of our actors
+        self._taken = False  # whether there is anything to put back
 
     def load(self, name: str) -> None:
         """Load a map anew: no actors of anybody's, the clock at 0, and step by step from here on."""
+        self._taken = True
         self.world = self._loaded(name)
         settings = self.world.get_settings()
         settings.no_rendering_mode = self.found["no_rendering_mode"]
@@ -79,19 +81,23 @@ class Server:
 
     def leave(self) -> int:
         """Remove our actors, restore the settings found, and return how many of our actors are left."""
-        gone = set(self.ours)
-        left = 0
+        gone, left = set(self.ours), 0
         if gone:
             self.destroy(gone)
             left = sum(actor.id in gone for actor in self.tick())
-        self._restore(self.found)
+        if self._taken:
+            self._restore(self.found)
         return left
 
     def sweep(self, found: dict[str, Any]) -> int:
-        """Remove what a client that died left: all actors of our roles; restore the settings that it had found."""
-        self.ours = set(self._of_our_roles())
-        self.found = found
-        return self.leave()
+        """Remove what a client that died left: restore the settings that it had found, remove actors of our roles."""
+        self._restore(found)
+        self.world.wait_for_tick(self._patience)  # before it, no actor is known
+        gone = self._of_our_roles()
+        self.ours = set(gone)
+        self.destroy(gone)
+        self.world.wait_for_tick(self._patience)
+        return len(self._of_our_roles())
 
     def _of_our_roles(self) -> list[int]:
         actors = self.world.get_actors()

@@ -44,7 +44,11 @@ class Session:
         self._server = server
         self._found: dict[str, Any] | None = None  # the settings to leave behind, once they may have been changed
         self._start()
-        told = self.ask("connect", STARTED, host=server.host, port=server.port, patience=server.patience)
+        try:
+            told = self.ask("connect", STARTED, host=server.host, port=server.port, patience=server.patience)
+        except SimulatorError:
+            self._end()
+            raise
         self.version: str = told.words["version"]
         self._found = told.words["found"]
 
@@ -118,6 +122,8 @@ class Session:
     def _end(self) -> None:
         """End the process; where it did not leave the server as it was, another one does."""
         self._link.close()
+        if self._log.closed:
+            return
         unclean = self._process.poll() != 0
         self._process.kill()
         self._process.wait()

@@ -91,6 +91,11 @@ class CarlaSimulator:
         """Return all other vehicles of the town, for pictures and records."""
         return self._vehicles(np.arange(self._first, len(self._table)))
 
+    @property
+    def process(self) -> int:
+        """Return the id of the process that holds CARLA's client."""
+        return self._session.process
+
     def close(self) -> None:
         """Leave the server as it was found; a second call does nothing."""
         self._session.close()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import math
 import random
 import socket
@@ -97,14 +96,11 @@ class Traffic:
         return model
 
     def end(self) -> None:
-        """Let go of the cars; the manager itself is shut down after they are gone."""
-        release = [carla.command.SetAutopilot(actor, False, self._port) for actor in sorted(self._ids)]
-        with contextlib.ExitStack() as stack:
-            stack.callback(self._manager.set_synchronous_mode, False)
-            self._server.client.apply_batch_sync(release, False)
+        """End the Traffic Manager, before its cars are gone: else it looks for them and aborts.
 
-    def shut_down(self) -> None:
-        """End the Traffic Manager, without which the next session would hang or crash."""
+        Without an end the next session would hang or crash.
+        """
+        self._manager.set_synchronous_mode(False)
         self._manager.shut_down()
 
 
