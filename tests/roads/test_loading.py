@@ -20,7 +20,7 @@ def test_a_map_is_a_shipped_town_or_a_file(tmp_path: Path) -> None:
     assert "millbrook" in shipped_towns()
 
 
-@pytest.mark.parametrize("name", ["milbrook", "town.xodr", "", "a\nb"])
+@pytest.mark.parametrize("name", ["milbrook", "town.osm", "", "a\nb"])
 def test_an_unknown_town_is_refused_with_the_towns_there_are(name: str) -> None:
     with pytest.raises(MapError, match="millbrook") as caught:
         load_map(name)
@@ -28,7 +28,7 @@ def test_an_unknown_town_is_refused_with_the_towns_there_are(name: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["missing.net.xml", ".net.xml", "a\0b.net.xml", "a\nb.net.xml", "pipe.net.xml", "x.net.xml"]
+    "name", ["missing.net.xml", ".net.xml", "a\0b.net.xml", "a\nb.net.xml", "pipe.net.xml", "x.net.xml", "a\nb.xodr"]
 )
 def test_a_file_that_cannot_be_read_is_one_line(name: str, tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe.net.xml")  # must not wait for someone to write into it

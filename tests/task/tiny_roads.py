@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from tmpud.geometry import Polyline
-from tmpud.roads.network import Lane, LaneConnection, RoadNetwork
+from tmpud.roads.network import NOWHERE, WHOLE, Lane, LaneConnection, RoadNetwork, Stretch
 from tmpud.symbols import Action, Cost, LazyCost, Place, ServiceRequest, Transition
 
 
@@ -56,7 +56,11 @@ def random_network(rng: random.Random, crossings: int = 3, roads: int = 6) -> Ro
 
 
 def _marked(lane: Lane, rng: random.Random) -> Lane:
-    return replace(lane, change_left=rng.random() < 0.8, change_right=rng.random() < 0.8)
+    return replace(lane, change_left=_open(rng), change_right=_open(rng))
+
+
+def _open(rng: random.Random) -> tuple[Stretch, ...]:
+    return WHOLE if rng.random() < 0.8 else NOWHERE
 
 
 def grid(blocks: int, rng: random.Random | None = None) -> RoadNetwork:

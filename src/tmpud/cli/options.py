@@ -23,7 +23,9 @@ def _number(value: float) -> float:
     return value
 
 
-Map = Annotated[str, typer.Option("--map", "-m", help="A shipped town's name (millbrook) or a .net.xml(.gz) file.")]
+Map = Annotated[
+    str, typer.Option("--map", "-m", help="A shipped town's name (millbrook) or a .net.xml(.gz) or .xodr file.")
+]
 From = Annotated[str, typer.Option("--from", help="Start: a lane or edge id, x,y in map coordinates, or random.")]
 To = Annotated[str, typer.Option("--to", help="Goal, like --from.")]
 Via = Annotated[list[str] | None, typer.Option("--via", help="A place on the way; repeat for more, in their order.")]

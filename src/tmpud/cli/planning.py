@@ -77,7 +77,9 @@ def _effort(report: PlanReport) -> dict[str, Any]:
 
 @map_app.command("info")
 def map_info(
-    map_: Annotated[str, typer.Argument(metavar="MAP", help="A shipped town's name or a .net.xml(.gz) file.")] = TOWN,
+    map_: Annotated[
+        str, typer.Argument(metavar="MAP", help="A shipped town's name or a .net.xml(.gz) or .xodr file.")
+    ] = TOWN,
     *,
     edges: Annotated[
         bool, typer.Option("--edges", help="List the edges and their lanes, which --from and --to take.")
@@ -105,6 +107,28 @@ def map_info(
         if isinstance(value, float):
             shown = f"{value:.3g}"
         typer.echo(f"{name.replace('_', ' '):<20}{shown}")
+
+
+@map_app.command("import")
+def map_import(
+    file: Annotated[Path, typer.Argument(metavar="FILE.xodr", help="A map in OpenDRIVE.")],
+    *,
+    out: Annotated[
+        Path | None, typer.Option(help="The .net.xml(.gz) to write. Default: beside FILE, named like it.")
+    ] = None,
+) -> None:
+    """Write an OpenDRIVE map as a SUMO net, by netconvert. Every command then takes the net as --map.
+
+    plan and map info also take FILE.xodr itself, where CARLA's client is installed; docs/maps.md says what each keeps.
+    """
+    from tmpud.roads.loading import NETS
+    from tmpud.roads.netconvert import import_net
+
+    net = out or file.with_suffix(".net.xml.gz")
+    if not net.name.endswith(NETS):
+        raise typer.BadParameter(f"{net} is not named like a net: {' or '.join(NETS)}.", param_hint="--out")
+    network = import_net(file, net)
+    typer.echo(f"wrote {net}: {len(network.lanes)} lanes, {len(network.connections)} connections")
 
 
 def _list_edges(network: RoadNetwork, *, as_json: bool) -> None:

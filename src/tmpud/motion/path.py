@@ -11,7 +11,7 @@ from typing import NamedTuple
 from tmpud.geometry import Point
 from tmpud.motion.mapping import RoadPoint
 from tmpud.roads.moves import SHORTEST_MERGE
-from tmpud.roads.network import Lane, LaneConnection, RoadNetwork
+from tmpud.roads.network import Lane, LaneConnection, RoadNetwork, Stretch
 from tmpud.symbols import Action
 
 MERGE_LENGTH = 25.0  # [m] of road that a lane change takes where there is room
@@ -97,8 +97,9 @@ def _expand(
         yield (Follow(lane, at.station, goal.station),), goal
     if action.is_merge and not changed:
         neighbour = network.neighbour(at.lane, action)
-        if neighbour is not None and network.may_change(at.lane, action):
-            yield from _changes(lane, neighbour, at.station, goal)
+        part = network.open_from(at.lane, action, at.station, SHORTEST_MERGE)
+        if neighbour is not None and part is not None:
+            yield from _changes(lane, neighbour, at.station, part, goal)
     elif not action.is_merge and not moves:
         for connection in network.outgoing(at.lane):
             if connection.action is action:
@@ -106,14 +107,18 @@ def _expand(
                 yield (Follow(lane, at.station, lane.length), Cross(connection)), to
 
 
-def _changes(lane: Lane, target: Lane, station: float, goal: RoadPoint) -> Iterator[tuple[tuple[Move, ...], RoadPoint]]:
+def _changes(
+    lane: Lane, target: Lane, station: float, part: Stretch, goal: RoadPoint
+) -> Iterator[tuple[tuple[Move, ...], RoadPoint]]:
+    """Yield the change from a lane to its neighbour within the part of the lane where it is allowed."""
     ratio = target.length / lane.length
     limit = goal.station / ratio if goal.lane == target.id else lane.length
-    length = min(MERGE_LENGTH, limit - station)
+    length = min(MERGE_LENGTH, limit - part.start, part.end - part.start)
     if length >= SHORTEST_MERGE:
-        end = station + length
+        end = part.start + length
         at_goal = goal.lane == target.id and end >= limit - 1e-6
-        yield (Change(lane, target, station, end),), goal if at_goal else RoadPoint(target.id, end * ratio)
+        before = (Follow(lane, station, part.start),) if part.start > station else ()
+        yield (*before, Change(lane, target, part.start, end)), goal if at_goal else RoadPoint(target.id, end * ratio)
 
 
 def outline(move: Move, spacing: float = 1.0) -> list[Point]:

@@ -49,8 +49,10 @@ class PathPlanner:
         fixed = self._mapping.is_fixed(transition.next_state)
         if fixed or not (transition.action.is_merge and self._network.uncut):
             return goal
+        part = self._network.open_from(here.lane, transition.action, here.station, SHORTEST_MERGE)
+        begin = part.start if part else here.station
         lane = self._network.lanes[goal.lane]
         ratio = lane.length / self._network.lanes[here.lane].length
-        if goal.station - here.station * ratio >= SHORTEST_MERGE:
+        if goal.station - begin * ratio >= SHORTEST_MERGE:
             return goal
-        return RoadPoint(goal.lane, min((here.station + MERGE_LENGTH) * ratio, lane.length - END_ROOM))
+        return RoadPoint(goal.lane, min((begin + MERGE_LENGTH) * ratio, lane.length - END_ROOM))

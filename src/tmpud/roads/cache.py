@@ -13,20 +13,14 @@ import os
 import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import fields
 from functools import cache
 from pathlib import Path
-from typing import Any
 
-from tmpud.geometry import Point, Polyline
-from tmpud.roads.network import Frame, Junction, Lane, LaneConnection, RoadNetwork, SignalProgram
-from tmpud.roads.sumo_net import net_name
-from tmpud.symbols import Action
+from tmpud.roads.network import RoadNetwork
+from tmpud.roads.rows import from_rows, to_rows
 
 LARGE = 2_000  # [lanes] smaller maps are read as quickly as a cache would be
 _CODE = Path(__file__).parent
-
-Row = list[Any]
 
 
 def cache_folder() -> Path | None:
@@ -69,7 +63,7 @@ def _kept(place: Path, file: Path, segment_length: float) -> RoadNetwork | None:
         if json.loads(stamp) != _stamp(place.stem, body):
             return None
         with _no_collection():
-            return _network(json.loads(body), file, segment_length)
+            return from_rows(json.loads(body), file, segment_length)
     except (OSError, ValueError, TypeError, LookupError, RecursionError):
         return None
 
@@ -88,7 +82,7 @@ def _no_collection() -> Iterator[None]:
 
 def _keep(place: Path, network: RoadNetwork) -> None:
     """Write a network into the cache, whole or not at all."""
-    body = json.dumps(_rows(network), separators=(",", ":"), allow_nan=False).encode()
+    body = json.dumps(to_rows(network), separators=(",", ":"), allow_nan=False).encode()
     with suppress(OSError):  # the next time it is read from the net itself
         place.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(dir=place.parent, prefix=".") as folder:
@@ -104,77 +98,5 @@ def _stamp(digest: str, body: bytes) -> dict[str, str]:
 @cache
 def _code_digest() -> str:
     """Return what changes with the code that reads maps."""
-    files = [*sorted(_CODE.glob("*.py")), _CODE.parent / "geometry.py"]
+    files = [*sorted(_CODE.rglob("*.py")), _CODE.parent / "geometry.py"]
     return hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()
-
-
-def _rows(network: RoadNetwork) -> dict[str, Any]:
-    """Return a network in the types of JSON; connections name lanes by their number."""
-    number = {lane: i for i, lane in enumerate(network.lanes)}
-    return {
-        "digest": network.digest,
-        "lanes": [_values(lane, centre=lane.centre.points) for lane in network.lanes.values()],
-        "connections": [
-            _values(each, from_lane=number[each.from_lane], to_lane=number[each.to_lane], path=each.path.points)
-            for each in network.connections
-        ],
-        "junctions": [_values(junction) for junction in network.junctions.values()],
-        "signals": [_values(signal) for signal in network.signals.values()],
-        "frame": _values(network.frame),
-        "warnings": network.warnings,
-    }
-
-
-def _values(item: Any, **instead: Any) -> Row:
-    return [instead.get(field.name, getattr(item, field.name)) for field in fields(item)]
-
-
-def _network(rows: dict[str, Any], file: Path, segment_length: float) -> RoadNetwork:
-    lanes = [_lane(*row) for row in rows["lanes"]]
-    ids = [lane.id for lane in lanes]
-    return RoadNetwork(
-        name=net_name(file),
-        lanes={lane.id: lane for lane in lanes},
-        connections=tuple(_connection(ids, *row) for row in rows["connections"]),
-        junctions={row[0]: _junction(*row) for row in rows["junctions"]},
-        signals={name: _signal(name, offset, phases) for name, offset, phases in rows["signals"]},
-        frame=Frame((rows["frame"][0][0], rows["frame"][0][1]), rows["frame"][1]),
-        source=str(file),
-        digest=rows["digest"],
-        warnings=tuple(rows["warnings"]),
-        segment_length=segment_length,
-    )
-
-
-def _lane(name: str, edge: str, index: int, centre: Row, elevation: Row, *others: Any) -> Lane:
-    return Lane(name, edge, index, Polyline(centre), tuple(elevation), *others)
-
-
-def _connection(ids: Row, start: int, end: int, action: str, junction: str, path: Row, *others: Any) -> LaneConnection:
-    internal, signal, link, priority, turnaround, yields_to, foes = others
-    return LaneConnection(
-        ids[start],
-        ids[end],
-        Action(action),
-        junction,
-        Polyline(path),
-        tuple(internal),
-        signal,
-        link,
-        priority,
-        turnaround,
-        tuple(yields_to),
-        tuple(foes),
-    )
-
-
-def _junction(name: str, kind: str, x: float, y: float, shape: Row) -> Junction:
-    return Junction(name, kind, x, y, _points(shape))
-
-
-def _signal(name: str, offset: float, phases: Row) -> SignalProgram:
-    return SignalProgram(name, offset, tuple((duration, state) for duration, state in phases))
-
-
-def _points(row: Row) -> tuple[Point, ...]:
-    return tuple((x, y) for x, y in row)

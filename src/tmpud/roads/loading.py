@@ -1,4 +1,4 @@
-"""Maps by name: the towns that ship with the package, or a net from a file."""
+"""Maps by name: the towns that ship with the package, or a map from a file."""
 
 from __future__ import annotations
 
@@ -6,13 +6,15 @@ from functools import partial
 from pathlib import Path
 
 from tmpud.errors import MapError
-from tmpud.roads.cache import cache_folder, read_cached
+from tmpud.roads.cache import LARGE, cache_folder, read_cached
 from tmpud.roads.network import SEGMENT_LENGTH, RoadNetwork
 from tmpud.roads.sumo_net import read_sumo_net
 from tmpud.roads.xml_reading import shown
 
+OPENDRIVE = ".xodr"
 _TOWNS = Path(__file__).parent / "towns"
-_SUFFIXES = (".net.xml", ".net.xml.gz")
+NETS = (".net.xml", ".net.xml.gz")
+_SUFFIXES = (*NETS, OPENDRIVE)
 
 
 def shipped_towns() -> tuple[str, ...]:
@@ -21,7 +23,7 @@ def shipped_towns() -> tuple[str, ...]:
 
 
 def map_file(name_or_path: str | Path) -> Path:
-    """Return the net file of a shipped town or a path; MapError where it is neither."""
+    """Return the file of a shipped town or a path; MapError where it is neither."""
     text = str(name_or_path)
     if text in shipped_towns():
         return _TOWNS / f"{text}.net.xml.gz"
@@ -35,9 +37,15 @@ def map_file(name_or_path: str | Path) -> Path:
 
 
 def load_map(name_or_path: str | Path, segment_length: float = SEGMENT_LENGTH) -> RoadNetwork:
-    """Return the road network of a shipped town or a net file, in segments of at most this length [m].
+    """Return the road network of a shipped town or a file, in segments of at most this length [m].
 
-    A large one is kept in the user's cache folder (``roads.cache``). Raises MapError.
+    A large one, and any from OpenDRIVE, is kept in the user's cache folder (``roads.cache``). Raises MapError.
     """
-    read = partial(read_sumo_net, segment_length=segment_length)
-    return read_cached(map_file(name_or_path), segment_length, read, cache_folder())
+    file = map_file(name_or_path)
+    if file.suffix != OPENDRIVE:
+        read = partial(read_sumo_net, segment_length=segment_length)
+        return read_cached(file, segment_length, read, cache_folder(), LARGE)
+    from tmpud.roads.opendrive.reading import read_opendrive
+
+    read = partial(read_opendrive, segment_length=segment_length)
+    return read_cached(file, segment_length, read, cache_folder(), 0)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
@@ -29,7 +30,7 @@ def moves(network: RoadNetwork, segment: str) -> Iterator[Move]:
         yield Move(Action.FORWARD, ahead.id)
     for action in MERGES:
         target = network.merge_target(segment, action)
-        if target and _has_room(network, network.segments[segment], target):
+        if target and _has_room(network, network.segments[segment], target, action):
             yield Move(action, target.id)
 
 
@@ -43,7 +44,7 @@ def moves_into(network: RoadNetwork, segment: str) -> Iterator[Move]:
         yield Move(Action.FORWARD, behind.id)
     for action in MERGES:
         origin = network.merge_origin(segment, action)
-        if origin and _has_room(network, origin, network.segments[segment]):
+        if origin and _has_room(network, origin, network.segments[segment], action):
             yield Move(action, origin.id)
 
 
@@ -51,10 +52,22 @@ def _ways(connections: Iterable[LaneConnection]) -> Iterator[LaneConnection]:
     return (connection for connection in connections if not connection.turnaround)
 
 
-def _has_room(network: RoadNetwork, origin: Segment, target: Segment) -> bool:
-    """Whether a merge has SHORTEST_MERGE: to the target's middle, or from the lane's middle to its end if uncut."""
+def _has_room(network: RoadNetwork, origin: Segment, target: Segment, action: Action) -> bool:
+    """Whether a merge has SHORTEST_MERGE: to the target's middle, or from the lane's middle to its end if uncut.
+
+    Where cars may not change lanes everywhere, it has to be there from the last third of the segment on: no pose of
+    the state lies further ahead.
+    """
     way = target.end - origin.middle if network.uncut else target.middle - origin.middle
-    return way >= SHORTEST_MERGE
+    if way < SHORTEST_MERGE:
+        return False
+    latest = origin.start + (origin.end - origin.start) * 2 / 3
+    part = network.open_from(origin.lane, action, latest, SHORTEST_MERGE)
+    if part is None or part == (latest, math.inf):
+        return part is not None
+    there = target.end if network.uncut else target.middle
+    there *= network.lanes[origin.lane].length / network.lanes[target.lane].length
+    return min(part.end, there) - part.start >= SHORTEST_MERGE
 
 
 def reachable(network: RoadNetwork, starts: Iterable[str]) -> set[str]:

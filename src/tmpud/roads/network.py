@@ -16,6 +16,17 @@ SEGMENT_LENGTH = 60.0  # [m]
 _OPPOSITE = {Action.MERGELEFT: Action.MERGERIGHT, Action.MERGERIGHT: Action.MERGELEFT}
 
 
+class Stretch(NamedTuple):
+    """A part of a lane, in stations [m]."""
+
+    start: float
+    end: float
+
+
+WHOLE = (Stretch(0.0, math.inf),)  # the whole of any lane
+NOWHERE: tuple[Stretch, ...] = ()
+
+
 @dataclass(frozen=True, slots=True)
 class Lane:
     """One lane of a road (edge), open to cars."""
@@ -27,8 +38,8 @@ class Lane:
     elevation: tuple[float, ...]  # [m] z at each point of ``centre``
     width: float  # [m]
     speed: float  # [m/s] limit
-    change_left: bool = True  # cars may leave it to the left
-    change_right: bool = True
+    change_left: tuple[Stretch, ...] = WHOLE  # where cars may leave it to the left
+    change_right: tuple[Stretch, ...] = WHOLE
 
     @property
     def length(self) -> float:
@@ -86,6 +97,7 @@ class SignalProgram:
     id: str
     offset: float  # [s]
     phases: tuple[tuple[float, str], ...]  # (duration [s], one letter per link)
+    lights: tuple[str, ...] = ()  # the source's id of what shows each letter, where it has several
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,6 +121,7 @@ class RoadNetwork:
     source: str = ""  # the file it was read from
     digest: str = ""  # sha256 of that file
     warnings: tuple[str, ...] = ()
+    parts: Mapping[str, str] = field(default_factory=dict)  # the source's id of a part of a lane -> the lane
     segment_length: float = SEGMENT_LENGTH  # [m] longest segment; inf: one per lane
     segments: dict[str, Segment] = field(init=False)
     edges: dict[str, tuple[str, ...]] = field(init=False)  # edge -> its lanes, rightmost first
@@ -178,10 +191,19 @@ class RoadNetwork:
         return there if abs(there.index - here.index) == 1 else None
 
     def may_change(self, lane: str, action: Action) -> bool:
-        """Whether cars may leave a lane to its left (mergeleft) or right (mergeright)."""
+        """Whether cars may anywhere leave a lane to its left (mergeleft) or right (mergeright)."""
         here = self.lanes[lane]
         allowed = here.change_left if action is Action.MERGELEFT else here.change_right
-        return allowed and self.neighbour(lane, action) is not None
+        return bool(allowed) and self.neighbour(lane, action) is not None
+
+    def open_from(self, lane: str, action: Action, station: float, length: float) -> Stretch | None:
+        """Return where from a station on cars may first leave a lane, for some length [m] at least; None if nowhere."""
+        here = self.lanes[lane]
+        for start, end in here.change_left if action is Action.MERGELEFT else here.change_right:
+            begin = max(start, station)
+            if end - begin >= length:
+                return Stretch(begin, end)
+        return None
 
     def merge_target(self, segment: str, action: Action) -> Segment | None:
         """Return where a merge from a segment leads: the neighbouring lane's next segment, None where not offered.

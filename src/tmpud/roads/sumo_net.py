@@ -10,7 +10,8 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from tmpud.geometry import Polyline
-from tmpud.roads.network import SEGMENT_LENGTH, Frame, Junction, Lane, RoadNetwork, SignalProgram
+from tmpud.roads.network import NOWHERE, SEGMENT_LENGTH, WHOLE, Frame, Junction, Lane, RoadNetwork, SignalProgram
+from tmpud.roads.rows import map_name
 from tmpud.roads.sumo_links import Links, read_links
 from tmpud.roads.sumo_right_of_way import with_right_of_way
 from tmpud.roads.vehicle_classes import names_cars, open_to_cars
@@ -43,7 +44,7 @@ def read_sumo_net(path: Path, *, turnarounds: bool = False, segment_length: floa
     links = read_links(found["connection"], edges, rows, functions, lanes, turnarounds)
     _check_signals(links, signals)
     return RoadNetwork(
-        name=net_name(path),
+        name=map_name(path),
         lanes=lanes,
         connections=with_right_of_way(links, nodes, rows),
         junctions=_junctions(nodes, {edges[lane.edge].text(end) for lane in lanes.values() for end in ("from", "to")}),
@@ -54,11 +55,6 @@ def read_sumo_net(path: Path, *, turnarounds: bool = False, segment_length: floa
         warnings=tuple(_warnings(rows, functions, lanes, links)),
         segment_length=segment_length,
     )
-
-
-def net_name(path: Path) -> str:
-    """Return what a map from a file is called."""
-    return path.name.removesuffix(".gz").removesuffix(".xml").removesuffix(".net")
 
 
 def _by_id(elements: Iterable[Element]) -> dict[str, Element]:
@@ -132,8 +128,8 @@ def _lane(edge_id: str, element: Element) -> Lane:
         elevation=elevation,
         width=element.number("width", _DEFAULT_WIDTH, low=0.01),
         speed=element.number("speed", low=0.01),
-        change_left=names_cars(element, "changeLeft"),
-        change_right=names_cars(element, "changeRight"),
+        change_left=WHOLE if names_cars(element, "changeLeft") else NOWHERE,
+        change_right=WHOLE if names_cars(element, "changeRight") else NOWHERE,
     )
 
 

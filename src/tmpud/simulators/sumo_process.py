@@ -35,6 +35,8 @@ def start(network: RoadNetwork, seed: int, collision_action: str = "none") -> Mo
     libsumo = imported()
     if not Path(network.source).is_file():
         raise SimulatorError(f"{network.name}: SUMO needs the map's file, and {network.source!r} is none")
+    if network.source.endswith(".xodr"):
+        raise SimulatorError(f"{network.name}: SUMO drives on nets; make one: tmpud map import {network.source}")
     if libsumo.isLoaded():
         raise SimulatorError("SUMO holds one simulation per process: close the other, or use a process for each")
     try:
