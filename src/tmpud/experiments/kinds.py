@@ -19,6 +19,7 @@ from tmpud.experiments.trials.figure4 import DEVIATIONS as FIGURE4_DEVIATIONS
 from tmpud.experiments.trials.figure4 import Figure4
 from tmpud.experiments.trials.grid import Grid
 from tmpud.experiments.trials.grid import rows as grid_rows
+from tmpud.experiments.trials.table1 import CARLA_DEVIATIONS
 from tmpud.experiments.trials.table1 import DEVIATIONS as TABLE1_DEVIATIONS
 
 RESAMPLING_SEED = 1
@@ -46,6 +47,9 @@ def _of_figure(options: Mapping[str, Any], records: Iterable[Record]) -> Iterabl
 
 KINDS = {
     "table1": Kind(title="Full simulation: Table I", rows=_of_grid, reference=TABLE1, deviations=TABLE1_DEVIATIONS),
+    "table1-carla": Kind(
+        title="Full simulation on a CARLA server: Table I", rows=_of_grid, reference=TABLE1, deviations=CARLA_DEVIATIONS
+    ),
     "figure4": Kind(
         title="Abstract simulation: the paper's figure",
         rows=_of_figure,

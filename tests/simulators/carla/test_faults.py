@@ -188,7 +188,7 @@ def test_a_contact_told_often_and_late_is_one_contact(start: Start, server: Loop
 
 
 def test_no_server_and_no_client_are_one_line_each(blocks: RoadNetwork, monkeypatch: pytest.MonkeyPatch) -> None:
-    with pytest.raises(SimulatorError, match="no CARLA server at 127.0.0.1:1 "):
+    with pytest.raises(SimulatorError, match=r"no CARLA server at 127\.0\.0\.1:1 "):
         CarlaSimulator(blocks, traffic=0, seed=1, server=Address(port=1))
     monkeypatch.setattr("importlib.util.find_spec", lambda _: None)
     with pytest.raises(SimulatorError, match=r"pip install 'tmpud\[carla\]'"):

@@ -9,7 +9,7 @@ import carla
 LETTERS = {
     carla.TrafficLightState.Red: "r",
     carla.TrafficLightState.Yellow: "y",
-    carla.TrafficLightState.Green: "G",
+    carla.TrafficLightState.Green: "g",  # and give way: CARLA may show green to crossing traffic, too
 }
 OFF = "O"
 

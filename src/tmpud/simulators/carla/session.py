@@ -31,6 +31,12 @@ class Address:
     port: int = 2000
     patience: float = 10.0  # [s] in which it answers a call
 
+    @classmethod
+    def named(cls, name: str) -> Address:
+        """Return the server that ``str`` named."""
+        host, _, port = name.rpartition(":")
+        return cls(host=host, port=int(port))
+
     def __str__(self) -> str:
         return f"{self.host}:{self.port}"
 

@@ -14,7 +14,7 @@ class Signals:
 
     def __init__(self, network: RoadNetwork) -> None:
         self._heads = {
-            name: getattr(program, "lights", ()) or tuple(f"{name}_{link}" for link in range(len(program.phases[0][1])))
+            name: program.lights or tuple(f"{name}_{link}" for link in range(len(program.phases[0][1])))
             for name, program in network.signals.items()
         }  # netconvert names a signal's heads so where it writes a net as OpenDRIVE
         self.letters: Mapping[str, str] = {}
