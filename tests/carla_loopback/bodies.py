@@ -53,14 +53,14 @@ def place(body: Body, transform: list[Any]) -> None:
     (body.x, body.y, _), (body.pitch, body.yaw, body.roll) = transform
 
 
-def drive(body: Body, dt: float) -> None:
+def drive(body: Body, dt: float, *, mirrored: bool = False) -> None:
     """Move a vehicle by its control: a bicycle that turns about its rear axle, half a wheelbase behind its origin."""
     throttle, steer, brake, hand = body.control[:4]
     pull = max(min(throttle, 1.0), 0.0) * PULL - DRAG * body.speed
     braking = BRAKES * max(min(brake, 1.0), 0.0) + (BRAKES if hand else 0.0)
     before = body.speed
     body.speed = max(before + (pull - braking) * dt, 0.0)
-    angle = math.radians(MAX_STEER * max(min(steer, 1.0), -1.0))
+    angle = math.radians(MAX_STEER * max(min(steer, 1.0), -1.0)) * (-1 if mirrored else 1)
     turned = (before + body.speed) / 2 * dt * math.tan(angle) / WHEELBASE
     yaw = math.radians(body.yaw)
     along = (before + body.speed) / 2 * dt

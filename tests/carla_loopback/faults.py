@@ -20,6 +20,9 @@ class Faults:
     collision_copies: int = 1  # how often each collision is told
     collision_delay: int = 0  # [frames]
 
+    mirrored: bool = False  # steers the other way
+    keeps_actors: bool = False  # says it destroyed what it did not
+
     def refuses_spawn(self) -> bool:
         self.refused_spawns -= 1
         return self.refused_spawns >= 0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import defaultdict
 from collections.abc import Callable
 from typing import NamedTuple
 
@@ -34,10 +35,14 @@ def place_lights(lights: list[Light], new_id: Callable[[], int]) -> list[Body]:
 
 def look(lights: list[Body], vehicles: list[Body], time: float) -> None:
     """Set what each light shows, and for each vehicle the light that it is at."""
+    by_cell: dict[tuple[int, int], list[Body]] = defaultdict(list)
     for light in lights:
         light.light_state = _state(light.place, time)
+        column, row = _cell(light)
+        for cell in [(column + dx, row + dy) for dx in (-1, 0, 1) for dy in (-1, 0, 1)]:
+            by_cell[cell].append(light)
     for vehicle in vehicles:
-        ahead = next((light for light in lights if _is_at(vehicle, light)), None)
+        ahead = next((light for light in by_cell.get(_cell(vehicle), ()) if _is_at(vehicle, light)), None)
         vehicle.at_light = ahead.id if ahead else None
         vehicle.light_state = ahead.light_state if ahead else GREEN
 
@@ -48,10 +53,12 @@ def _state(light: Light, time: float) -> int:
     return GREEN if into < GREEN_TIME else YELLOW if into < GREEN_TIME + YELLOW_TIME else RED
 
 
+def _cell(body: Body) -> tuple[int, int]:
+    return int(body.x // REACH), int(body.y // REACH)
+
+
 def _is_at(vehicle: Body, light: Body) -> bool:
     dx, dy = light.x - vehicle.x, light.y - vehicle.y
-    if abs(dx) + abs(dy) > 2 * REACH:
-        return False
     yaw = math.radians(light.yaw)
     along, across = dx * math.cos(yaw) + dy * math.sin(yaw), dy * math.cos(yaw) - dx * math.sin(yaw)
     return -1.0 < along < REACH and abs(across) < BESIDE

@@ -84,7 +84,7 @@ class Town:
         return [body for body in self.bodies.values() if body.kind is Kind.VEHICLE]
 
     def destroy(self, actor: int) -> bool:
-        return self.bodies.pop(actor, None) is not None
+        return self.faults.keeps_actors or self.bodies.pop(actor, None) is not None
 
     def tick(self) -> None:
         """Move everything by one step."""
@@ -93,9 +93,9 @@ class Town:
         lights = [body for body in self.bodies.values() if body.kind is Kind.LIGHT]
         look(lights, self.vehicles(), self.time)
         for body in self.vehicles():
-            drive(body, self.dt)
+            drive(body, self.dt, mirrored=self.faults.mirrored)
         for actor in self.faults.vanishing(self.frame, [body.id for body in self.vehicles()]):
-            self.destroy(actor)
+            self.bodies.pop(actor)
         self.collisions = self._collisions()
 
     def _collisions(self) -> list[tuple[Body, Body, Body]]:

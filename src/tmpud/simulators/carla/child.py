@@ -61,6 +61,13 @@ class Child:
         self.drive.step(acceleration, steering)
         return self.drive.seen()
 
+    def _park(self, x: float, y: float, heading: float) -> Answer:
+        self.drive.park(Pose(x, y, heading))
+        return self.drive.seen()
+
+    def _look(self) -> Answer:
+        return {"settings": self.server.settings(), "actors": self.server.left_behind()}, None
+
     def _sweep(self, settings: dict[str, Any]) -> Answer:
         """Remove what a process before this one left behind."""
         return {"left": self.server.sweep(settings)}, None

@@ -47,6 +47,11 @@ class Drive:
         for _ in range(SETTLING):
             self.step()
 
+    def park(self, pose: Pose) -> None:
+        """Put a car there that stands for ever."""
+        self._traffic.park(pose)
+        self.step()
+
     def _standing(self, pose: Pose) -> list[int]:
         """Return who stands where the ego is to appear."""
         ids, table = self._reader.read(self._snapshot, None)

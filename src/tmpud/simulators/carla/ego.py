@@ -11,13 +11,12 @@ import numpy as np
 
 from tmpud.errors import SimulatorError
 from tmpud.geometry import Pose
-from tmpud.roads.carla_coordinates import KMH, from_pose, to_steer
+from tmpud.roads.carla_coordinates import KMH, to_steer
 from tmpud.simulators.carla.pedals import Pedals
 from tmpud.simulators.carla.reader import box_of
-from tmpud.simulators.carla.server import DT, ROLE, Server
+from tmpud.simulators.carla.server import DT, ROLE, Server, above
 
 MODEL = "vehicle.tesla.model3"
-LIFT = 0.5  # [m] a car is put so much above the road, and falls onto it
 SETTLING = 20  # steps until a car that was put on the road stands
 
 
@@ -30,7 +29,7 @@ class Ego:
         self.id: int = self._actor.id
         server.ours.add(self.id)
         box = box_of(self._actor)
-        self._actor.set_transform(_transform(server, pose, box.centre))
+        self._actor.set_transform(above(server, pose, box.centre))
         physics = self._actor.get_physics_control()
         self._largest = float(physics.wheels[0].max_steer_angle)  # [deg]
         self._curve = np.array([(point.x, point.y) for point in physics.steering_curve] or [(0.0, 1.0)]).T
@@ -43,7 +42,7 @@ class Ego:
     def _spawned(self, pose: Pose) -> Any:
         model = self._server.world.get_blueprint_library().find(MODEL)
         model.set_attribute("role_name", f"{ROLE} ego")
-        actor = self._server.world.try_spawn_actor(model, _transform(self._server, pose, (0.0, 0.0)))
+        actor = self._server.world.try_spawn_actor(model, above(self._server, pose))
         if actor is None:
             raise SimulatorError(f"the server does not spawn the ego at {pose.x:.1f}, {pose.y:.1f}: no room there")
         return actor
@@ -97,11 +96,3 @@ class Ego:
         """Take sensor and car away."""
         self.stop_listening()
         self._server.destroy([self.id])
-
-
-def _transform(server: Server, pose: Pose, box: tuple[float, float]) -> Any:
-    """Return where an actor is put such that the centre of its box is above a pose."""
-    x, y, yaw = from_pose(pose, box)
-    road = server.world.get_map().get_waypoint(carla.Location(x, y, 0.0))
-    z = road.transform.location.z if road else 0.0
-    return carla.Transform(carla.Location(x, y, z + LIFT), carla.Rotation(yaw=yaw))

@@ -9,10 +9,13 @@ from typing import Any
 import carla
 
 from tmpud.errors import SimulatorError
+from tmpud.geometry import Point, Pose
+from tmpud.roads.carla_coordinates import from_pose
 
 DT = 0.05  # [s] of one step
 CONNECTED = 2.5  # [s] in which a server says its version
 LOADING = 60.0  # [s] in which a server loads a map
+LIFT = 0.5  # [m] a car is put so much above the road, and falls onto it
 ROLE = "tmpud"  # role names of all our actors begin so
 KEPT = ("no_rendering_mode", "max_substep_delta_time", "max_substeps", "substepping", "deterministic_ragdolls")
 
@@ -31,7 +34,7 @@ class Server:
             )
         self.world = client.get_world()
         client.set_timeout(patience)
-        self.found = as_words(self.world.get_settings())  # what to leave behind
+        self.found = self.settings()  # what to leave behind
         self.ours: set[int] = set()  # ids of our actors
         self._taken = False  # whether there is anything to put back
 
@@ -79,6 +82,17 @@ class Server:
         self.client.apply_batch_sync([carla.command.DestroyActor(actor) for actor in gone], False)
         self.ours.difference_update(gone)
 
+    def settings(self) -> dict[str, Any]:
+        """Return what of the settings is put back in the end."""
+        settings = self.world.get_settings()
+        return {name: getattr(settings, name) for name in (*KEPT, "synchronous_mode", "fixed_delta_seconds")}
+
+    def left_behind(self) -> int:
+        """Return how many actors of our roles there are on a server that runs freely."""
+        if not self.settings()["synchronous_mode"]:
+            self.world.wait_for_tick(self._patience)  # before it, no actor is known
+        return len(self._of_our_roles())
+
     def leave(self) -> int:
         """Remove our actors, restore the settings found, and return how many of our actors are left."""
         gone, left = set(self.ours), 0
@@ -113,11 +127,14 @@ class Server:
         self.world.apply_settings(settings)
 
 
-def as_words(settings: Any) -> dict[str, Any]:
-    """Return what of a server's settings is put back."""
-    return {name: getattr(settings, name) for name in (*KEPT, "synchronous_mode", "fixed_delta_seconds")}
-
-
 def _short(name: str) -> str:
     """Return a map's name without its folders."""
     return name.rsplit("/", 1)[-1]
+
+
+def above(server: Server, pose: Pose, box: Point = (0.0, 0.0)) -> Any:
+    """Return where an actor is put such that the centre of its box is a little above a pose on the road."""
+    x, y, yaw = from_pose(pose, box)
+    road = server.world.get_map().get_waypoint(carla.Location(x, y, 0.0))
+    z = road.transform.location.z if road else 0.0
+    return carla.Transform(carla.Location(x, y, z + LIFT), carla.Rotation(yaw=yaw))

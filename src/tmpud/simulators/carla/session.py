@@ -113,12 +113,15 @@ class Session:
             self._process.wait(MARGIN)
         code, said = self._process.poll(), self._last_words()
         self._end()
-        kind = SimulatorHangError if "time-out" in said else SimulatorError
-        return kind(f"CARLA at {self._server}: the client ended with {code} when asked to '{asked}': {said}")
+        return self._fault(f"the client ended with {code} when asked to '{asked}': {said}")
 
     def _refused(self, asked: str, why: str) -> SimulatorError:
-        kind = SimulatorHangError if "time-out" in why else SimulatorError
-        return kind(f"CARLA at {self._server}: '{asked}' failed: {why}")
+        return self._fault(f"'{asked}' failed: {why}")
+
+    def _fault(self, said: str) -> SimulatorError:
+        """Tell a server that takes too long from one that is gone; the client speaks of a time-out in both cases."""
+        late = "time-out" in said and _listens(self._server) is None
+        return (SimulatorHangError if late else SimulatorError)(f"CARLA at {self._server}: {said}")
 
     def _last_words(self) -> str:
         self._log.seek(0)
@@ -152,8 +155,14 @@ def _look_for(server: Address) -> None:
     """Raise SimulatorError in one line where the client is not installed or nobody listens."""
     if importlib.util.find_spec("carla") is None:
         raise SimulatorError("CARLA's client is not installed: pip install 'tmpud[carla]'")
+    if reason := _listens(server):
+        raise SimulatorError(f"no CARLA server at {server} ({reason}): start it, or name --host and --port")
+
+
+def _listens(server: Address) -> str | None:
+    """Return why nobody can be reached, None where somebody can."""
     try:
         socket.create_connection((server.host, server.port), REACHED).close()
     except OSError as error:
-        reason = error.strerror or str(error)
-        raise SimulatorError(f"no CARLA server at {server} ({reason}): start it, or name --host and --port") from None
+        return error.strerror or str(error)
+    return None

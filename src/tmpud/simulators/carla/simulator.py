@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from types import TracebackType
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -90,6 +90,17 @@ class CarlaSimulator:
     def everyone(self) -> Vehicles:
         """Return all other vehicles of the town, for pictures and records."""
         return self._vehicles(np.arange(self._first, len(self._table)))
+
+    # For tests and ``carla verify`` ------------------------------------------------------------------------------
+
+    def park(self, pose: Pose) -> None:
+        """Put a car there that stands for ever; one step passes."""
+        self._take(self._session.ask("park", self._session.patience, x=pose.x, y=pose.y, heading=pose.heading))
+
+    def settings(self) -> dict[str, Any]:
+        """Return the server's settings, as far as they are put back in the end."""
+        settings: dict[str, Any] = self._session.ask("look", self._session.patience).words["settings"]
+        return settings
 
     @property
     def process(self) -> int:

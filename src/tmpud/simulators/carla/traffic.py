@@ -10,9 +10,9 @@ from typing import Any
 import carla
 
 from tmpud.errors import SimulatorError
-from tmpud.geometry import Point
+from tmpud.geometry import Point, Pose
 from tmpud.roads.carla_coordinates import KMH, to_point
-from tmpud.simulators.carla.server import ROLE, Server
+from tmpud.simulators.carla.server import ROLE, Server, above
 
 ROOM = 10.0  # [m] around a spawn point where a car appears
 SENSING_RANGE = 80.0  # [m] no car appears in the ego's sight
@@ -94,6 +94,14 @@ class Traffic:
         model = self._rng.choice(self._models)
         model.set_attribute("role_name", f"{ROLE} traffic")
         return model
+
+    def park(self, pose: Pose) -> None:
+        """Put a car at a pose without driver; SimulatorError where the server refuses it."""
+        actor = self._server.world.try_spawn_actor(self._model(), above(self._server, pose))
+        if actor is None:
+            raise SimulatorError(f"the server does not spawn a car at {pose.x:.1f}, {pose.y:.1f}")
+        self._server.ours.add(actor.id)
+        actor.apply_control(carla.VehicleControl(hand_brake=True))
 
     def end(self) -> None:
         """End the Traffic Manager, before its cars are gone: else it looks for them and aborts.
