@@ -9,7 +9,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from benchmarks import full_step, growth, highway, load, plan, safety, start, trials
+from benchmarks import abstract, full_step, growth, highway, load, plan, safety, start, trials
 from benchmarks.harness import DisagreementError, SkipError
 from benchmarks.report import as_json, headline, table, write
 
@@ -21,6 +21,7 @@ BENCHMARKS: dict[str, ModuleType] = {
     "full_step": full_step,
     "highway": highway,
     "trials": trials,
+    "abstract": abstract,
 }
 
 

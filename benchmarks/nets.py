@@ -1,4 +1,4 @@
-"""Maps to measure on: shipped towns, net files, and grids that netgenerate draws."""
+"""Maps to measure on: shipped towns, net files, nets that come with SUMO, and grids that netgenerate draws."""
 
 from __future__ import annotations
 
@@ -8,11 +8,13 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from importlib.resources import files
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from tmpud.roads.loading import map_file
 
+SHIPPED = "sumo:"  # nets that come with the Python package eclipse-sumo, by their path in its tools
 _GRID = re.compile(r"grid:(\d+):(\d+)(:even)?")
 BLOCK = 120  # [m]
 SHIFT = "normc(0,15,-30,30)"  # [m] by which crossings are moved, so that ways differ in length
@@ -22,9 +24,13 @@ SHIFT = "normc(0,15,-30,30)"  # [m] by which crossings are moved, so that ways d
 def net_file(name: str) -> Iterator[Path]:
     """Give the net file of a town, of a path, or of ``grid:K:L``: K x K crossings, roads of L lanes each way.
 
-    The blocks of ``grid:K:L:even`` are all alike, so that there are as many best ways as can be.
+    The blocks of ``grid:K:L:even`` are all alike, so that there are as many best ways as can be. ``sumo:game/DRT/osm``
+    is a real net that comes with eclipse-sumo.
     """
     found = _GRID.fullmatch(name)
+    if name.startswith(SHIPPED):
+        yield Path(str(files("sumo"))) / "tools" / f"{name.removeprefix(SHIPPED)}.net.xml"
+        return
     if not found:
         yield map_file(name)
         return

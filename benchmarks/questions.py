@@ -36,6 +36,7 @@ class Question:
     """One request, and the transition of its first plan that turned out less safe."""
 
     request: ServiceRequest
+    state: State  # where the plan is to start
     safe: Safe
     start: int
     goal: int
@@ -66,26 +67,28 @@ def weight(cost: float, safe: float) -> int:
     return round((cost + penalty) * 100)
 
 
-def draw(graph: Graph, rng: random.Random, longest: int | None = None) -> Iterator[Question]:
+def draw(graph: Graph, rng: random.Random, longest: int | None = None, goals: int | None = None) -> Iterator[Question]:
     """Yield questions about random pairs of segments, those whose best plan has more actions than ``longest`` left out.
 
-    The first action of the first plan is the one whose Safe falls, as in a drive that estimates before it acts.
+    The first action of the first plan is the one whose Safe falls, as in a drive that estimates before it acts. The
+    pairs have only so many ``goals``, where a number is given: cars under way to the same few places.
     """
-    segments = list(graph.index)
+    segments, planner = list(graph.index), AspPlanner(graph.network)
+    shared = [_request(*rng.sample(segments, 2)) for _ in range(goals or 0)]
     while True:
         start, goal = rng.sample(segments, 2)
-        request, safe = _request(start, goal), OptimisticSafe()
-        planner = AspPlanner(graph.network)
+        request = rng.choice(shared) if shared else _request(start, goal)
+        state, safe = State(start, request.leg_after(start, 0)), OptimisticSafe()
         try:
-            step = planner.plan(request.start_state(), request, graph.cost, safe)[0]
-        except NoPlanError:
+            step = planner.plan(state, request, graph.cost, safe)[0]
+        except (NoPlanError, IndexError):
             continue
         safe[step] = UNSAFE
-        actions = len(planner.plan(request.start_state(), request, graph.cost, safe))
+        actions = len(planner.plan(state, request, graph.cost, safe))
         if longest is None or actions <= longest:
             ends = graph.index[start], graph.index[step.next_state.segment]
-            changed = weight(graph.cost[step], UNSAFE)
-            yield Question(request, safe, ends[0], graph.index[goal], graph.edges[ends], changed, actions)
+            end, changed = graph.index[request.goals[0].segments[0]], weight(graph.cost[step], UNSAFE)
+            yield Question(request, state, safe, ends[0], end, graph.edges[ends], changed, actions)
 
 
 def _request(start: str, goal: str) -> ServiceRequest:

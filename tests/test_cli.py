@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import pytest
 
 from tests.roads.nets import CROSSING
+from tests.roads.opendrive.crossroads import crossroads
 from tests.viewer.made_runs import recorded
 from tmpud.cli import INTERRUPTED, main
 from tmpud.errors import TmpudError
@@ -178,6 +179,21 @@ def test_the_edges_of_a_map_and_their_lanes_can_be_listed(tmpud: Tmpud) -> None:
     assert any(START in lanes for lanes in edges.values())
     assert GOAL in edges
     assert [line.split()[0] for line in told.splitlines()] == list(edges)
+
+
+def test_opendrive_becomes_a_net_beside_it_on_which_plans_are_made(tmpud: Tmpud, tmp_path: Path) -> None:
+    (tmp_path / "town.xodr").write_text(crossroads(), encoding="utf-8")
+    assert tmpud("map", "import", "town.xodr").out.startswith("wrote town.net.xml.gz: 28 lanes")
+    assert tmpud("map", "info", "town.net.xml.gz", "--json").json["lanes"] == 28
+    mission = ("--from=-100,-5.25", "--to", "1.75,60", "--map", "town.net.xml.gz")
+    assert "turnleft" in tmpud("plan", *mission, "--json").json["actions"]
+
+
+def test_what_cannot_be_imported_is_one_line(tmpud: Tmpud, tmp_path: Path) -> None:
+    (tmp_path / "town.xodr").write_text("<OpenDRIVE/>", encoding="utf-8")
+    assert tmpud("map", "import", "town.xodr").refusal == "town.xodr:1: OpenDRIVE: the header is missing"
+    assert "cannot be read" in tmpud("map", "import", "missing.xodr").refusal
+    assert ".net.xml" in tmpud("map", "import", "town.xodr", "--out", "town.xml").refusal
 
 
 def test_plain_clingo_finds_the_same_optimum_in_what_asp_dump_writes(tmpud: Tmpud, tmp_path: Path) -> None:

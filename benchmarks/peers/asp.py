@@ -81,7 +81,7 @@ def _ground(encoding: str, facts: str, horizon: int, *options: str) -> clingo.Co
 
 def _instance(graph: Graph, question: Question) -> str:
     planner = AspPlanner(graph.network, prune=False)
-    return planner.instance(question.request.start_state(), question.request, graph.cost, question.safe)
+    return planner.instance(question.state, question.request, graph.cost, question.safe)
 
 
 def _weights(graph: Graph, question: Question) -> dict[tuple[str, str], int]:

@@ -76,7 +76,7 @@ class Vehicles:
     def of_rows(cls, ids: tuple[str, ...], lanes: tuple[str, ...], rows: Sequence[tuple[float, ...]]) -> Vehicles:
         """Gather rows of x, y, z, heading, speed, yaw rate, acceleration, length and width into arrays."""
         shape = len(ids), len(_ARRAYS)
-        flat = np.fromiter(chain.from_iterable(rows), dtype=np.float64, count=shape[0] * shape[1])
+        flat = np.array([*chain.from_iterable(rows)], dtype=np.float64)
         return cls(ids, lanes, *flat.reshape(shape).T.copy())
 
 

@@ -26,6 +26,7 @@ TINY = {
     "start": ("--rounds", "1"),
     "full_step": ("--vehicles", "3", "--steps", "250", "--rounds", "1"),
     "trials": ("--seeds", "1", "--traffic", "3"),
+    "abstract": ("--trials", "5", "--rounds", "2"),
 }
 
 

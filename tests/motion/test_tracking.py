@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.motion.test_speed import ROUTE
+from tests.motion.routes import ROUTE
 from tmpud.dynamics import EGO, step, within_limits
 from tmpud.geometry import Pose
 from tmpud.motion.tracking import PID, Tracker

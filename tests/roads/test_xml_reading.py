@@ -26,7 +26,7 @@ def write(folder: Path, content: bytes, name: str = "a.net.xml") -> Path:
 def test_elements_that_are_not_asked_for_are_left_out_with_all_within(tmp_path: Path) -> None:
     path = write(tmp_path, b'<net>\n<lane id="a"><param><lane id="b"/></param></lane>\n<lane id="c"/></net>')
     root, _ = read_xml(path, "net", ["lane"])
-    assert [(child.text("id"), child.line, child.children) for child in root.children] == [("a", 2, []), ("c", 3, [])]
+    assert [(child.text("id"), child.line, child.children) for child in root.children] == [("a", 2, ()), ("c", 3, ())]
 
 
 @pytest.mark.parametrize("doctype", [b"<!DOCTYPE net>", BOMB, b'<!DOCTYPE net SYSTEM "file:///etc/passwd">'])

@@ -10,9 +10,9 @@ from tmpud.presets import TMPUD
 from tmpud.symbols import OptimisticSafe, State
 from tmpud.task.corridor import Search, backward_tree, corridor, whole_map
 from tmpud.task.domain import Domain
-from tmpud.task.facts import encoding, facts, named
-from tmpud.task.solver import ask
-from tmpud.task.utility import FORBIDDEN, Utility, split
+from tmpud.task.facts import REDUCED, choices, encoding, facts, spelled
+from tmpud.task.solver import ask, ground, written
+from tmpud.task.utility import FORBIDDEN, Utility, most, split
 
 
 def search_of(case: Case, state: State) -> tuple[Domain, Search]:
@@ -31,12 +31,30 @@ def test_the_corridor_holds_every_optimal_plan_of_the_whole_map(seed: int) -> No
     domain, search = search_of(case, state)
     found, everything = corridor(search, state), whole_map(search, state)
     weights = {transition: split(rank)[0] for transition, rank in everything.ranks.items()}
-    answer = ask(encoding() + facts(domain, state, weights), named((step,) for step in weights))
+    answer = ask(written(encoding() + facts(domain, state, weights), {spelled(step): (step,) for step in weights}))
     assert (found is None) == (answer.union == ())
     if found is not None:
         assert found.optimal_transitions() == set(answer.union)
         assert set(answer.union) <= set(found.ranks) <= set(everything.ranks)
         assert split(found.optimum)[0] == answer.centimetres
+
+
+@pytest.mark.parametrize("seed", range(60))
+@pytest.mark.parametrize("more", [0, 50_00])
+def test_the_solver_is_given_what_the_encoding_says_of_a_corridor(seed: int, more: int) -> None:
+    case = random_case(random.Random(seed))
+    state = State(case.request.start.segments[0], 0)
+    domain, search = search_of(case, state)
+    best = corridor(search, state)
+    if best is None:
+        return
+    given = corridor(search, state, most(split(best.optimum)[0] + more))
+    assert given is not None
+    program = encoding(REDUCED) + choices(domain, state, given.ranks, given.reduced)
+    read = ask(written(program, {spelled(step): (step,) for step in given.ranks}))
+    built = ask(ground(state, domain.last, given))
+    assert (set(built.union), built.centimetres, built.optimal) == (set(read.union), read.centimetres, True)
+    assert more or set(built.union) == given.optimal_transitions()
 
 
 @pytest.mark.parametrize("seed", range(60))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,8 +15,8 @@ from tmpud.experiments.running.store import Results, provenance
 from tmpud.experiments.running.tasks import Record, results_hash
 from tmpud.experiments.statistics.paper_numbers import FIGURE4, TABLE1, Reference
 from tmpud.experiments.statistics.rows import TrialRow
-from tmpud.experiments.trials.figure4 import DEVIATIONS as FIGURE4_DEVIATIONS
 from tmpud.experiments.trials.figure4 import Figure4
+from tmpud.experiments.trials.figure4 import deviations as figure4_deviations
 from tmpud.experiments.trials.grid import Grid
 from tmpud.experiments.trials.grid import rows as grid_rows
 from tmpud.experiments.trials.table1 import CARLA_DEVIATIONS
@@ -34,7 +34,7 @@ class Kind:
     rows: Rows  # of the manifest's options and the records
     reference: Reference
     batches: bool = False  # whether bars show the spread over batches, as in the paper's figure
-    deviations: tuple[str, ...] = ()
+    deviations: Callable[[Iterable[Record]], Sequence[str]] = lambda _: ()
 
 
 def _of_grid(options: Mapping[str, Any], records: Iterable[Record]) -> Iterable[TrialRow]:
@@ -46,16 +46,21 @@ def _of_figure(options: Mapping[str, Any], records: Iterable[Record]) -> Iterabl
 
 
 KINDS = {
-    "table1": Kind(title="Full simulation: Table I", rows=_of_grid, reference=TABLE1, deviations=TABLE1_DEVIATIONS),
+    "table1": Kind(
+        title="Full simulation: Table I", rows=_of_grid, reference=TABLE1, deviations=lambda _: TABLE1_DEVIATIONS
+    ),
     "table1-carla": Kind(
-        title="Full simulation on a CARLA server: Table I", rows=_of_grid, reference=TABLE1, deviations=CARLA_DEVIATIONS
+        title="Full simulation on a CARLA server: Table I",
+        rows=_of_grid,
+        reference=TABLE1,
+        deviations=lambda _: CARLA_DEVIATIONS,
     ),
     "figure4": Kind(
         title="Abstract simulation: the paper's figure",
         rows=_of_figure,
         reference=FIGURE4,
         batches=True,
-        deviations=FIGURE4_DEVIATIONS,
+        deviations=figure4_deviations,
     ),
     "sweep": Kind(title="A sweep in full simulation", rows=_of_grid, reference={}),
 }
@@ -87,7 +92,7 @@ class Findings:
             command=manifest["command"],
             run=provenance(self.results),
             pictures=(self.picture(),),
-            deviations=self.kind.deviations,
+            deviations=self.kind.deviations(self.results.records),
         )
 
     def picture(self) -> Picture:

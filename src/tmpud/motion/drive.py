@@ -7,9 +7,10 @@ import math
 import numpy as np
 
 from tmpud.dynamics import VehicleLimits
+from tmpud.motion.leading import Obstacle, leader
 from tmpud.motion.right_of_way import PATIENCE, RightOfWay
 from tmpud.motion.route import Gate, Route
-from tmpud.motion.speed import STANDING_GAP, Obstacle, acceleration, leader
+from tmpud.motion.speed import STANDING_GAP, acceleration
 from tmpud.motion.tracking import Tracker
 from tmpud.scene import Control, FloatArray, Scene
 

@@ -32,9 +32,10 @@ class Gate:
 class Route:
     """A smooth path to the goal pose and beyond, with what governs the speed on it."""
 
-    x: FloatArray  # (P,) [m] of points SPACING apart
+    x: FloatArray  # (P,) [m] of points at most SPACING apart
     y: FloatArray  # (P,) [m]
     headings: FloatArray  # (P,) [rad]
+    poses: Sequence[Pose]  # the same P points, one by one
     curvature: FloatArray  # (P,) [1/m], positive to the left
     speed_limit: FloatArray  # (P,) [m/s] what road, vehicle and the curves ahead allow
     end: float  # [m] station of the goal pose
@@ -59,15 +60,31 @@ class Route:
 
     def project(self, x: float, y: float, near: float | None = None) -> tuple[float, float]:
         """Return (station, offset to the left) of a point [m]; with ``near``, only within 8 m of that station."""
-        low, high = 0, len(self.x)
+        among = range(len(self.x))
         if near is not None:
-            low, high = max(self.index(near - 8.0), 0), self.index(near + 8.0) + 1
-        dx, dy = x - self.x[low:high], y - self.y[low:high]
-        i = int((dx * dx + dy * dy).argmin())
-        heading = float(self.headings[low + i])
-        along = float(dx[i]) * math.cos(heading) + float(dy[i]) * math.sin(heading)
-        across = float(dy[i]) * math.cos(heading) - float(dx[i]) * math.sin(heading)
-        return (low + i) * SPACING + along, across
+            among = among[self.index(near - 8.0) : self.index(near + 8.0) + 1]
+        i = self.nearest(x, y, among, self.index(near or 0.0))
+        along, across = self.beside(x, y, i)
+        return i * SPACING + along, across
+
+    def nearest(self, x: float, y: float, among: range, guess: int) -> int:
+        """Return which of some points that follow each other is nearest to (x, y); the better the guess, the sooner."""
+        poses, nearest = self.poses, guess
+        least = math.hypot(x - poses[guess].x, y - poses[guess].y)
+        i, end = among.start, among.stop
+        while i < end:
+            distance = math.hypot(x - poses[i].x, y - poses[i].y)
+            if distance < least:
+                nearest, least = i, distance
+            i += 1 + int((distance - least) / SPACING)  # those between are no nearer
+        return nearest
+
+    def beside(self, x: float, y: float, i: int) -> tuple[float, float]:
+        """Return how far ahead and to the left of the route's i-th point a point is [m]."""
+        place = self.poses[i]
+        dx, dy = x - place.x, y - place.y
+        cos, sin = math.cos(place.heading), math.sin(place.heading)
+        return dx * cos + dy * sin, dy * cos - dx * sin
 
 
 def build_route(
@@ -122,7 +139,8 @@ def _sampled(
     allowed = np.minimum(allowed, limits.max_speed)
     for i in range(count - 2, -1, -1):  # brake in time for what comes
         allowed[i] = min(allowed[i], math.sqrt(allowed[i + 1] ** 2 + 2 * COMFORTABLE_BRAKING * SPACING))
-    return Route(x, y, headings, curvature, allowed, end, gates, crossing)
+    poses = tuple(map(Pose, x.tolist(), y.tolist(), headings.tolist()))
+    return Route(x, y, headings, poses, curvature, allowed, end, gates, crossing)
 
 
 def _limits_at(stations: FloatArray, limit: list[tuple[float, float]]) -> FloatArray:

@@ -1,7 +1,8 @@
 """Large maps that were read before, kept in the user's cache folder by content, so that reading them again is quick.
 
-A file of the cache is a line of JSON, which says what it was made from and by which code, and a line with the network.
-One that is damaged, or another version's, is as good as none. ``TMPUD_NO_CACHE=1`` keeps none.
+A file of the cache is lines of JSON: what it was made from and by which code; the network, some rows at a time, so
+that a city's are never all in memory beside what they become; a digest of all that. One that is damaged, or another
+version's, is as good as none. ``TMPUD_NO_CACHE=1`` keeps none.
 """
 
 from __future__ import annotations
@@ -15,12 +16,14 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from functools import cache
 from pathlib import Path
+from typing import BinaryIO
 
 from tmpud.roads.network import RoadNetwork
-from tmpud.roads.rows import from_rows, to_rows
+from tmpud.roads.rows import Row, from_rows, to_rows
 
 LARGE = 2_000  # [lanes] smaller maps are read as quickly as a cache would be
 _CODE = Path(__file__).parent
+_END = "end"
 
 
 def cache_folder() -> Path | None:
@@ -59,11 +62,8 @@ def read_cached(
 def _kept(place: Path, file: Path, segment_length: float) -> RoadNetwork | None:
     """Return the network that a file of the cache holds, None where it holds none that can be used."""
     try:
-        stamp, _, body = place.read_bytes().partition(b"\n")
-        if json.loads(stamp) != _stamp(place.stem, body):
-            return None
-        with _no_collection():
-            return from_rows(json.loads(body), file, segment_length)
+        with place.open("rb") as lines, _no_collection():
+            return from_rows(_blocks(lines, place.stem), file, segment_length)
     except (OSError, ValueError, TypeError, LookupError, RecursionError):
         return None
 
@@ -82,17 +82,39 @@ def _no_collection() -> Iterator[None]:
 
 def _keep(place: Path, network: RoadNetwork) -> None:
     """Write a network into the cache, whole or not at all."""
-    body = json.dumps(to_rows(network), separators=(",", ":"), allow_nan=False).encode()
     with suppress(OSError):  # the next time it is read from the net itself
         place.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(dir=place.parent, prefix=".") as folder:
             written = Path(folder) / place.name
-            written.write_bytes(json.dumps(_stamp(place.stem, body)).encode() + b"\n" + body)
+            with written.open("wb") as file:
+                digest = hashlib.sha256()
+                for block in (_stamp(place.stem), *to_rows(network)):
+                    line = json.dumps(block, separators=(",", ":"), allow_nan=False).encode() + b"\n"
+                    digest.update(line)
+                    file.write(line)
+                file.write(json.dumps([_END, digest.hexdigest()]).encode() + b"\n")
             written.replace(place)
 
 
-def _stamp(digest: str, body: bytes) -> dict[str, str]:
-    return {"map": digest, "code": _code_digest(), "body": hashlib.sha256(body).hexdigest()}
+def _blocks(lines: BinaryIO, map_digest: str) -> Iterator[tuple[str, list[Row]]]:
+    """Yield the rows of a file of the cache under the names of their kinds; ValueError where it is not whole."""
+    stamp = lines.readline()
+    if json.loads(stamp) != _stamp(map_digest):
+        raise ValueError("made from another map, or by other code")
+    digest = hashlib.sha256(stamp)
+    for line in lines:
+        kind, rows = json.loads(line)
+        if kind == _END:
+            if rows != digest.hexdigest() or lines.read(1):
+                raise ValueError("not what was written")
+            return
+        digest.update(line)
+        yield kind, rows
+    raise ValueError("cut short")
+
+
+def _stamp(map_digest: str) -> dict[str, str]:
+    return {"map": map_digest, "code": _code_digest()}
 
 
 @cache

@@ -11,6 +11,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 
 from tmpud.errors import MapError
@@ -47,7 +48,7 @@ def import_net(source: Path, net: Path) -> RoadNetwork:
         except MapError as error:
             raise MapError(str(source), None, f"netconvert makes no sound net of it: {error.cause}") from error
         made.replace(net)
-    return network
+    return replace(network, source=str(net))
 
 
 def _convert(source: Path, written: Path) -> None:

@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import fields
+from functools import partial
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
 from tmpud.geometry import Point, Polyline
 from tmpud.roads.network import WHOLE, Frame, Junction, Lane, LaneConnection, RoadNetwork, SignalProgram, Stretch
 from tmpud.symbols import Action
+
+_BLOCK = 1_000  # [rows] that are handed over at a time
 
 Row = list[Any]
 
@@ -19,30 +24,55 @@ def map_name(path: Path) -> str:
     return path.name.removesuffix(".gz").removesuffix(".xml").removesuffix(".net").removesuffix(".xodr")
 
 
-def to_rows(network: RoadNetwork) -> dict[str, Any]:
-    """Return a network in the types of JSON; connections name lanes by their number."""
+def to_rows(network: RoadNetwork) -> Iterator[tuple[str, list[Row]]]:
+    """Yield a network in the types of JSON, some rows at a time; connections name lanes by their number."""
     number = {lane: i for i, lane in enumerate(network.lanes)}
-    return {
-        "digest": network.digest,
-        "lanes": [
-            _values(
-                lane,
-                centre=lane.centre.points,
-                change_left=_finite(lane.change_left),
-                change_right=_finite(lane.change_right),
-            )
-            for lane in network.lanes.values()
-        ],
-        "connections": [
+    yield "map", [[network.digest, _values(network.frame), network.warnings]]
+    kinds = {
+        "lanes": map(_lane_row, network.lanes.values()),
+        "connections": (
             _values(each, from_lane=number[each.from_lane], to_lane=number[each.to_lane], path=each.path.points)
             for each in network.connections
-        ],
-        "junctions": [_values(junction) for junction in network.junctions.values()],
-        "signals": [_values(signal) for signal in network.signals.values()],
-        "frame": _values(network.frame),
-        "warnings": network.warnings,
-        "parts": network.parts,
+        ),
+        "junctions": map(_values, network.junctions.values()),
+        "signals": map(_values, network.signals.values()),
+        "parts": map(list, network.parts.items()),
     }
+    for kind, rows in kinds.items():
+        while block := list(islice(rows, _BLOCK)):
+            yield kind, block
+
+
+def _values(item: Any, **instead: Any) -> Row:
+    return [instead.get(field.name, getattr(item, field.name)) for field in fields(item)]
+
+
+def from_rows(blocks: Iterable[tuple[str, list[Row]]], file: Path, segment_length: float) -> RoadNetwork:
+    ids: list[str] = []
+    make: dict[str, Callable[..., Any]] = {**_MADE, "connections": partial(_connection, ids)}
+    found: dict[str, list[Any]] = {kind: [] for kind in make}
+    for kind, rows in blocks:
+        found[kind] += [make[kind](*row) for row in rows]
+        ids += [row[0] for row in rows if kind == "lanes"]
+    ((digest, (offset, projection), warnings),) = found["map"]
+    return RoadNetwork(
+        name=map_name(file),
+        lanes={lane.id: lane for lane in found["lanes"]},
+        connections=tuple(found["connections"]),
+        junctions={junction.id: junction for junction in found["junctions"]},
+        signals={signal.id: signal for signal in found["signals"]},
+        frame=Frame((offset[0], offset[1]), projection),
+        source=str(file),
+        digest=digest,
+        warnings=tuple(warnings),
+        parts=dict(found["parts"]),
+        segment_length=segment_length,
+    )
+
+
+def _lane_row(lane: Lane) -> Row:
+    changes = {name: _finite(getattr(lane, name)) for name in ("change_left", "change_right")}
+    return _values(lane, centre=lane.centre.points, **changes)
 
 
 def _finite(stretches: tuple[Stretch, ...]) -> Row | None:
@@ -50,28 +80,6 @@ def _finite(stretches: tuple[Stretch, ...]) -> Row | None:
     if stretches == WHOLE:
         return None
     return [(start, None if math.isinf(end) else end) for start, end in stretches]
-
-
-def _values(item: Any, **instead: Any) -> Row:
-    return [instead.get(field.name, getattr(item, field.name)) for field in fields(item)]
-
-
-def from_rows(rows: dict[str, Any], file: Path, segment_length: float) -> RoadNetwork:
-    lanes = [_lane(*row) for row in rows["lanes"]]
-    ids = [lane.id for lane in lanes]
-    return RoadNetwork(
-        name=map_name(file),
-        lanes={lane.id: lane for lane in lanes},
-        connections=tuple(_connection(ids, *row) for row in rows["connections"]),
-        junctions={row[0]: _junction(*row) for row in rows["junctions"]},
-        signals={row[0]: _signal(*row) for row in rows["signals"]},
-        frame=Frame((rows["frame"][0][0], rows["frame"][0][1]), rows["frame"][1]),
-        source=str(file),
-        digest=rows["digest"],
-        warnings=tuple(rows["warnings"]),
-        parts=rows["parts"],
-        segment_length=segment_length,
-    )
 
 
 def _lane(name: str, edge: str, index: int, centre: Row, elevation: Row, *others: Any) -> Lane:
@@ -115,3 +123,12 @@ def _signal(name: str, offset: float, phases: Row, lights: Row) -> SignalProgram
 
 def _points(row: Row) -> tuple[Point, ...]:
     return tuple((x, y) for x, y in row)
+
+
+_MADE: dict[str, Callable[..., Any]] = {
+    "map": lambda *row: row,
+    "lanes": _lane,
+    "junctions": _junction,
+    "signals": _signal,
+    "parts": lambda *row: row,
+}

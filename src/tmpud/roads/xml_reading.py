@@ -9,9 +9,10 @@ import math
 import re
 import stat
 import zlib
-from collections.abc import Collection, Iterator
-from dataclasses import dataclass, field
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
+from typing import BinaryIO
 from xml.parsers import expat
 
 from tmpud.errors import MapError
@@ -33,7 +34,7 @@ class Element:
     attributes: dict[str, str]
     source: str
     line: int
-    children: list[Element] = field(default_factory=list)
+    children: Sequence[Element] = ()  # a list only where there are some: a city has millions without
 
     def error(self, cause: str) -> MapError:
         return MapError(self.source, self.line, f"{self.tag}: {cause}")
@@ -119,12 +120,20 @@ def read_xml(path: Path, root: str, keep: Collection[str]) -> tuple[Element, str
             raise MapError(source, None, "cannot be read: not a regular file")
         if status.st_size > MAX_BYTES:
             raise MapError(source, None, f"larger than {MAX_BYTES} bytes")
-        stored = path.read_bytes()
+        builder, digest = _TreeBuilder(source, root, keep), hashlib.sha256()
+        with path.open("rb") as stored:
+            chunks = _chunks(stored, digest)
+            builder.feed(_unpacked(source, b"".join(chunks)) if path.suffix == ".gz" else chunks)
     except (OSError, ValueError) as error:
         raise MapError(source, None, f"cannot be read: {getattr(error, 'strerror', None) or error}") from error
-    builder = _TreeBuilder(source, root, keep)
-    builder.feed(_unpacked(source, stored) if path.suffix == ".gz" else iter([stored]))
-    return builder.root, hashlib.sha256(stored).hexdigest()
+    return builder.root, digest.hexdigest()
+
+
+def _chunks(file: BinaryIO, digest: hashlib._Hash) -> Iterator[bytes]:
+    """Yield a file's bytes, and add them to a digest."""
+    while chunk := file.read(_CHUNK):
+        digest.update(chunk)
+        yield chunk
 
 
 def _unpacked(source: str, stored: bytes) -> Iterator[bytes]:
@@ -186,7 +195,10 @@ class _TreeBuilder:
             if len(value) < _SHORT:
                 attributes[name] = self._known.setdefault(value, value)
         element = Element(tag, attributes, self._source, line)
-        parent.children.append(element)
+        if isinstance(parent.children, list):
+            parent.children.append(element)
+        else:
+            parent.children = [element]
         self._open.append(element)
 
     def _end(self, _: str) -> None:

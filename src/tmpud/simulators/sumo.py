@@ -179,10 +179,12 @@ class SumoSimulator(Simulation):
 
         Only the next ones are looked at, and the one before.
         """
-        first = max(self._at - 1, 0)
-        near = abs(self._way[self._at][1].project(x, y)[1]) + JOINT
-        lines = [(i, line) for i, (_, line) in enumerate(self._way[first : self._at + NEXT_LANES], first)]
-        offsets = {i: abs(line.project(x, y)[1]) for i, line in lines if line.least_distance(x, y) < near}
+        offsets = {self._at: abs(self._way[self._at][1].project(x, y)[1])}
+        near = offsets[self._at] + JOINT
+        for i in range(max(self._at - 1, 0), min(self._at + NEXT_LANES, len(self._way))):
+            line = self._way[i][1]
+            if i != self._at and line.least_distance(x, y) < near:
+                offsets[i] = abs(line.project(x, y)[1])
         near = min(offsets.values()) + JOINT
         return max(i for i, offset in offsets.items() if offset < near)
 

@@ -44,17 +44,18 @@ class SumoReader:
         """Return vehicles but the ego from SUMO's values, in the order of their ids."""
         position, angle, speed, acceleration, lane = self.fields
         ids = tuple(sorted(seen.keys() - {EGO_ID}))
-        headings = self._headings_at(step)
-        rows = []
+        headings, sizes = self._headings_at(step), self._sizes
+        rows, lanes = [], []
         for vehicle in ids:
             values = seen[vehicle]
             x, y, z = values[position]
             headings[vehicle] = heading = wrap_angle(math.radians(90.0 - values[angle]))
-            length, width = self._sizes.get(vehicle) or self._size(vehicle)
+            length, width = sizes.get(vehicle) or self._size(vehicle)
             x, y = x - length / 2 * math.cos(heading), y - length / 2 * math.sin(heading)
             yaw_rate = self._yaw_rate(vehicle, heading, step)
             rows.append((x, y, z, heading, values[speed], yaw_rate, values[acceleration], length, width))
-        return Vehicles.of_rows(ids, tuple([seen[vehicle][lane] for vehicle in ids]), rows)
+            lanes.append(values[lane])
+        return Vehicles.of_rows(ids, tuple(lanes), rows)
 
     def signals(self, lights: Iterable[str], time: float) -> Mapping[str, str]:
         """Return what the lights show; the same object as long as none has come to its next switch."""

@@ -154,5 +154,5 @@ class AspPlanner:
 
 
 def report_of(plan: TaskPlan, utility: Utility, *, optimal: bool = False) -> PlanReport:
-    total = sum(split(utility.rank(transition))[0] for transition in plan)
-    return PlanReport(plan, *utility.total(plan), total, optimal)
+    terms, total = utility.total(plan)
+    return PlanReport(plan, *terms, total, optimal)

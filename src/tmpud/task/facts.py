@@ -37,17 +37,12 @@ def facts(domain: Domain, state: State, weights: Weights) -> str:
     return "\n".join((*lines, *_goals(domain), *weighed, *_ends(domain, state), ""))
 
 
-def named(ways: Iterable[Stretch]) -> dict[str, Stretch]:
-    """Return what names each way in every predicate; where it is long, a number stands for its action."""
-    return {spelled(way[0]) if len(way) == 1 else _spelled_long(way, n): way for n, way in enumerate(ways)}
-
-
-def stretches(domain: Domain, state: State, ways: Mapping[str, Stretch], reduced: Callable[[Stretch], Reduced]) -> str:
-    """Return the instance of ``plan.lp`` and ``reduced.lp`` for a plan from a state along some named ways."""
+def choices(domain: Domain, state: State, ranks: Iterable[Transition], reduced: Callable[[Stretch], Reduced]) -> str:
+    """Return the instance of ``plan.lp`` and ``reduced.lp`` for a plan from a state along some transitions."""
     lines = []
-    for name, way in ways.items():
-        more = reduced(way)
-        lines.append(f"can({name},{way[-1].next_state.leg},{more[0]}).")
+    for step in ranks:
+        name, more = spelled(step), reduced((step,))
+        lines.append(f"can({name},{step.next_state.leg},{more[0]}).")
         lines += [f"over({name},{amount},{3 - place})." for place, amount in enumerate(more) if amount or not place]
     return "\n".join((*lines, *_ends(domain, state), ""))
 
@@ -65,11 +60,6 @@ def spelled(transition: Transition) -> str:
     """Return the arguments that name a transition in every predicate, as clingo spells them, too."""
     (origin, leg), action, (target, _) = transition
     return f"{quote(origin)},{leg},{action},{quote(target)}"
-
-
-def _spelled_long(way: Stretch, number: int) -> str:
-    (origin, leg), (target, _) = way[0].state, way[-1].next_state
-    return f"{quote(origin)},{leg},{number},{quote(target)}"
 
 
 def quote(text: str) -> str:

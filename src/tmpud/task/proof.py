@@ -7,16 +7,16 @@ none at all is final only on the whole map.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING
 
 from tmpud.symbols import State, Transition
-from tmpud.task.corridor import Corridor, Search, Stretch, corridor, whole_map
+from tmpud.task.corridor import Corridor, Search, corridor, whole_map
 from tmpud.task.domain import Domain
-from tmpud.task.facts import PLACES, REDUCED, encoding, facts, named, places, stretches
-from tmpud.task.solver import ask, ask_one
+from tmpud.task.facts import PLACES, REDUCED, choices, encoding, facts, places, spelled
+from tmpud.task.solver import Choice, Question, ask, ground, written
 from tmpud.task.ties import preferred
 from tmpud.task.utility import check_total, most, split
 
@@ -74,25 +74,30 @@ class Prover:
 
     def _in_corridor(self, domain: Domain, state: State, given: Corridor) -> Proof:
         """Return the best plans in a corridor, of which a user's rules may mention every transition."""
-        ways = named([(step,) for step in given.ranks] if self.rules else given.stretches(state))
-        program = encoding(REDUCED) + stretches(domain, state, ways, given.reduced)
-        return self._ask(program, domain, state, given, ways)
+        check_total(given.ranks)
+        if self.rules is None:
+            return _proof(given, ground(state, domain.last, given, self.options))
+        program = encoding(REDUCED) + choices(domain, state, given.ranks, given.reduced)
+        return self._written(program, domain, state, given)
 
     def _on_the_map(self, domain: Domain, search: Search, state: State) -> Proof:
         given = whole_map(search, state)
-        weights = {step: split(rank)[0] for step, rank in given.ranks.items()}
-        ways = named((step,) for step in given.ranks)
-        return self._ask(encoding() + facts(domain, state, weights), domain, state, given, ways)
-
-    def _ask(self, program: str, domain: Domain, state: State, given: Corridor, ways: Mapping[str, Stretch]) -> Proof:
         check_total(given.ranks)
+        weights = {step: split(rank)[0] for step, rank in given.ranks.items()}
+        return self._written(encoding() + facts(domain, state, weights), domain, state, given)
+
+    def _written(self, program: str, domain: Domain, state: State, given: Corridor) -> Proof:
+        ways = {spelled(step): (step,) for step in given.ranks}
         if self.rules is None:
-            answer = ask(program, ways, self.options)
-        else:
-            program += encoding(PLACES) + places(domain, state, given.ranks) + self.rules.text
-            answer = ask_one(program, ways, partial(preferred, state), self.options)
-        total = answer.centimetres + split(given.optimum)[0]
-        return Proof(answer.union, total, answer.optimal, len(given.ranks), 1, answer.ground_s, answer.solve_s)
+            return _proof(given, written(program, ways, self.options))
+        program += encoding(PLACES) + places(domain, state, given.ranks) + self.rules.text
+        return _proof(given, written(program, ways, self.options), partial(preferred, state))
+
+
+def _proof(given: Corridor, question: Question, choose: Choice | None = None) -> Proof:
+    answer = ask(question, choose)
+    total = answer.centimetres + split(given.optimum)[0]
+    return Proof(answer.union, total, answer.optimal, len(given.ranks), 1, question.ground_s, answer.solve_s)
 
 
 def _summed(rounds: Sequence[Proof]) -> Proof:

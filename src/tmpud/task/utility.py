@@ -17,6 +17,8 @@ from tmpud.symbols import Action, Cost, Safe, TaskPlan, Transition
 LIMIT = 2**31  # [cm] the solver's integers wrap here
 FORBIDDEN = 1 << 90  # a rank above that of every plan
 FIELD = 20  # [bit] room for the number of merges, and for the number of actions
+TURNS = (Action.TURNLEFT, Action.TURNRIGHT)
+_STRAIGHT = dict.fromkeys(Action, 0.0)
 STEP = {action: (action.is_merge << FIELD) + 1 for action in Action}
 
 
@@ -33,28 +35,38 @@ class Utility:
 
     def __init__(self, preset: Preset, cost: Cost, safe: Safe, floor: Cost) -> None:
         """Take ``floor`` for a Cost that fell below it [m]; a transition that is not in it has no floor."""
-        self._preset, self._cost, self._safe, self._floor = preset, cost, safe, floor
-        self._turns = {action: turn_cost(action, preset) for action in Action}
-        self._penalties: dict[float, float] = {}  # by Safe
+        self._cost, self._safe, self._floor = cost, safe, floor
+        self._turns = _STRAIGHT | dict.fromkeys(TURNS, preset.turn_cost)
+        self._penalties = _Penalties(preset)
 
     def terms(self, transition: Transition) -> Terms:
         cost, floor = self._cost[transition], self._floor.get(transition, -math.inf)
-        safe = self._safe[transition]
-        if safe not in self._penalties:
-            self._penalties[safe] = penalty(safe, self._preset)
-        return Terms(floor if floor > cost else cost, self._penalties[safe], self._turns[transition.action])
+        safety = self._penalties[self._safe[transition]]
+        return Terms(floor if floor > cost else cost, safety, self._turns[transition.action])
 
     def rank(self, transition: Transition) -> int:
-        """Return the rank of a transition, FORBIDDEN where it cannot be driven; the only place that rounds."""
+        """Return the rank of a transition, FORBIDDEN where it cannot be driven."""
         cost, safety, turns = self.terms(transition)
         if cost == math.inf:
             return FORBIDDEN
         return (centimetres(cost + safety + turns, transition) << 2 * FIELD) + STEP[transition.action]
 
-    def total(self, plan: TaskPlan) -> Terms:
-        """Return the terms of a whole plan."""
+    def total(self, plan: TaskPlan) -> tuple[Terms, int]:
+        """Return the terms of a whole plan, and the sum of what each transition costs in whole centimetres."""
         rows = [self.terms(transition) for transition in plan]
-        return Terms(*(math.fsum(column) for column in zip(*rows, strict=True))) if rows else Terms(0.0, 0.0, 0.0)
+        terms = Terms(*(math.fsum(column) for column in zip(*rows, strict=True))) if rows else Terms(0.0, 0.0, 0.0)
+        return terms, sum(centimetres(sum(row), step) for row, step in zip(rows, plan, strict=True))
+
+
+class _Penalties(dict[float, float]):
+    """The safety term of each Safe [m], worked out when it is first asked for."""
+
+    def __init__(self, preset: Preset) -> None:
+        self._preset = preset
+
+    def __missing__(self, safe: float) -> float:
+        self[safe] = found = penalty(safe, self._preset)
+        return found
 
 
 def penalty(safe: float, preset: Preset) -> float:
@@ -67,7 +79,7 @@ def penalty(safe: float, preset: Preset) -> float:
 
 def turn_cost(action: Action, preset: Preset) -> float:
     """Return what is added for an action that is a left or right turn [m]."""
-    return preset.turn_cost if action in (Action.TURNLEFT, Action.TURNRIGHT) else 0.0
+    return preset.turn_cost if action in TURNS else 0.0
 
 
 def centimetres(metres: float, transition: Transition) -> int:

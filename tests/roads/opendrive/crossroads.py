@@ -4,7 +4,8 @@
                       |                       |                           north and south of it.  T: junction 200;
                                                                           road 6 comes from the south, with a stop sign.
 
-West, east and the crossing have two lanes each way, and bicycle lanes; lanes may be changed on a part of west only.
+West, east and the crossing have two lanes each way, and bicycle lanes; lanes may be changed
+on parts of west, on south to higher and on far east to lower numbers only.
 """
 
 from __future__ import annotations
@@ -60,8 +61,8 @@ def crossroads() -> str:
         Road(1, -200, 0, 0, 185, west, _links(after=100)),
         Road(2, 15, 0, 0, 170, links=_links(before=100, after=200), rise=0.02),
         Road(3, 0, 15, 90, 120, [Section(), Section(70.0, 3)], _links(before=100)),
-        Road(4, 0, -135, 90, 120, links=_links(after=100)),
-        Road(5, 215, 0, 0, 80, links=_links(before=200), speed=""),
+        Road(4, 0, -135, 90, 120, [Section(marks=((0.0, "increase"),))], _links(after=100)),
+        Road(5, 215, 0, 0, 80, [Section(marks=((0.0, "decrease"),))], _links(before=200), speed=""),
         Road(6, 200, -95, 90, 80, [Section(lanes=1)], _links(after=200)),
     ]
     posts = "".join(_signal(light, "1000001") for lights in CONTROLLERS.values() for light in lights)

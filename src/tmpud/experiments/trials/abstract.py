@@ -30,12 +30,12 @@ from tmpud.task.search_planner import SearchPlanner
 
 @dataclass(frozen=True, slots=True)
 class Way:
-    """One mission's request, the lengths of its transitions, and a planner whose kept tree is the mission's."""
+    """One mission's request, the lengths of its transitions, and the plans that were made for it."""
 
     request: ServiceRequest
     domain: Domain
     length: LazyCost
-    planner: SearchPlanner
+    planner: PlanMemory
 
     def path_length(self, transition: Transition) -> float:
         return self.length[transition]
@@ -66,24 +66,23 @@ class AbstractTrials:
         """Return how each trial ended."""
         communicate = communication(arguments["algorithm"], arguments["beta"])
         sample = prepared.samples[arguments["condition"]]
-        memories = [PlanMemory(way.planner, way.length) for way in prepared.ways]
+        for way in prepared.ways:
+            way.planner.begin()
         trials = range(arguments["first"], arguments["first"] + arguments["count"])
         ends = []
         for trial in trials:
-            mission = trial % len(prepared.ways)
-            way = prepared.ways[mission]
+            way = prepared.ways[trial % len(prepared.ways)]
             world = AbstractWorld(way.length.__getitem__, sample, f"{arguments['draws']}/{trial}")
-            ends.append((_driven(way, memories[mission], world, communicate), world))
+            ends.append((_driven(way, world, communicate), world))
+        made, proved, mismatches = (
+            sum(column) for column in zip(*(way.planner.counts() for way in prepared.ways), strict=True)
+        )
         return {
             "status": [status for status, _ in ends],
             "distance": [round(world.distance, 3) for _, world in ends],
             "collisions": [world.collisions for _, world in ends],
             "stops": [world.stops for _, world in ends],
-            "plans": {
-                "made": sum(memory.made for memory in memories),
-                "proved": sum(memory.proved for memory in memories),
-                "mismatches": sum(memory.mismatches for memory in memories),
-            },
+            "plans": {"made": made, "proved": proved, "mismatches": mismatches},
         }
 
 
@@ -91,12 +90,13 @@ def _way(network: RoadNetwork, preset: Preset, route: Sequence[str], seed: int) 
     start, goal = route
     request = service_request(network, start, (goal,), (), seed)
     paths = PathPlanner(network, StateMapping(network, request, preset, seed))
-    return Way(request, Domain(network, request), LazyCost(paths.path_length), SearchPlanner(network, preset))
+    length = LazyCost(paths.path_length)
+    return Way(request, Domain(network, request), length, PlanMemory(SearchPlanner(network, preset), length))
 
 
-def _driven(way: Way, memory: PlanMemory, world: AbstractWorld, communicate: Communicate) -> str:
+def _driven(way: Way, world: AbstractWorld, communicate: Communicate) -> str:
     """Run one trial and return its status."""
-    mind = Deliberation(way.request, way.domain, memory, way, world)
+    mind = Deliberation(way.request, way.domain, way.planner, way, world)
     try:
         return STATUS[_last(run_tmpud(way.domain.start_state(), mind, communicate))]
     except NoPlanError:

@@ -19,7 +19,7 @@ def main(file: str, answer: str) -> None:
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     try:
-        found = to_rows(read_town(Path(file)))
+        found: dict[str, object] = {"rows": [*to_rows(read_town(Path(file)))]}
     except MapError as error:
         found = {"error": [error.line, error.cause]}
     Path(answer).write_text(json.dumps(found, allow_nan=False), encoding="utf-8")

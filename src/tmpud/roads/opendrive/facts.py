@@ -97,6 +97,7 @@ def read_facts(path: Path) -> Facts:
         found[number] = _road(element)
     if not found:
         raise root.error("there is no road")
+    _check_references(root)
     if sum(road.length for road in found.values()) > MOST:
         raise root.error(f"the roads are longer than {MOST:.0f} m together")
     junctions = {junction.text("id"): junction for junction in _children(root, "junction")}
@@ -149,6 +150,15 @@ def _check_numbers(element: Element) -> None:
         element.number(name)
     for child in element.children:
         _check_numbers(child)
+
+
+def _check_references(root: Element) -> None:
+    """Refuse a reference to a signal that the file does not have: CARLA's parser does not survive it."""
+    marks = [mark for road in _children(root, "road") for row in _children(road, "signals") for mark in row.children]
+    known = {mark.text("id") for mark in marks if mark.tag == "signal"}
+    for mark in marks:
+        if mark.tag == "signalReference" and mark.text("id") not in known:
+            raise mark.error(f"id={shown(mark.text('id'))} is no signal of this map")
 
 
 def _limits(road: Element) -> Iterator[tuple[float, float]]:

@@ -12,6 +12,7 @@ from tmpud.roads.network import Lane, Stretch
 from tmpud.roads.opendrive.facts import Road
 from tmpud.roads.opendrive.strands import SAME, Key, Strand
 
+JUMP = 50.0  # [m] no two points of a lane that follow one another are further apart
 TOLERANCE = 0.02  # [m] by which a lane's centre line may miss a point that the map gives
 
 Row = tuple[Key, ...]  # the lanes of one side of a section, rightmost first
@@ -131,10 +132,13 @@ def _crossable(strand: Strand, road: Road, *, inward: bool) -> Iterator[tuple[fl
 
 
 def distinct(points: Sequence[Point]) -> list[int]:
-    """Return which points to keep so that none lies where the one before does; the last one is kept, or its like."""
+    """Return which points to keep so that none lies where the one before does; ValueError where one is far from it."""
     kept: list[int] = []
     for i, point in enumerate(points):
-        if not kept or math.dist(points[kept[-1]], point) > SAME:
+        step = math.dist(points[kept[-1]], point) if kept else math.inf
+        if kept and step > JUMP:
+            raise ValueError(f"a lane goes on {step:.0f} m from where it ends, at {point[0]:.1f},{point[1]:.1f}")
+        if step > SAME:
             kept.append(i)
     return kept
 

@@ -41,7 +41,7 @@ def read_opendrive(path: Path, segment_length: float = SEGMENT_LENGTH) -> RoadNe
         found = json.loads(answer.read_bytes())
     if "error" in found:
         raise MapError(source, *found["error"])
-    return from_rows(found, path, segment_length)
+    return from_rows(found["rows"], path, segment_length)
 
 
 def _run(path: Path, source: str, answer: Path) -> None:
@@ -52,13 +52,13 @@ def _run(path: Path, source: str, answer: Path) -> None:
     except subprocess.TimeoutExpired as error:
         raise MapError(source, None, f"CARLA's parser did not end within {TIME_LIMIT:.0f} s") from error
     if done.returncode or not answer.is_file():
-        raise MapError(source, None, f"CARLA's parser cannot read it: {_why(done.returncode, done.stderr)}")
+        raise MapError(source, None, _why(done.returncode, done.stderr))
 
 
 def _why(code: int, said: bytes) -> str:
     """Return in one line how the child ended."""
     if code < 0:
-        return f"it ended with {signal.Signals(-code).name}"
+        return f"CARLA's parser cannot read it: it ended with {signal.Signals(-code).name}"
     lines = said.decode(errors="replace").split("\n")
     last = next((line.strip() for line in reversed(lines) if line.strip()), "")
-    return last[:200] or f"it ended with exit code {code}"
+    return f"reading it failed: {last[:200] or f'exit code {code}'}"

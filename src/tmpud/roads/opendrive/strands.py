@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from statistics import median
 from typing import Any, NamedTuple
 
@@ -14,6 +14,7 @@ from tmpud.roads.opendrive.facts import Road
 
 SAME = 1e-3  # [m] points closer than this are one
 WITHIN = 1e-5  # [m]
+NARROWEST = 0.5  # [m] a lane that is mostly narrower is none
 STEP = 1.0  # [m] between the waypoints that are looked at
 
 
@@ -68,8 +69,13 @@ def read_strands(town: Any, roads: Mapping[int, Road]) -> dict[Key, Strand]:
         starts.setdefault(_key(here), here)
         starts.setdefault(_key(there), there)
         successors.setdefault(_key(here), {})[_key(there)] = None
-    return {
+    found = {
         key: _strand(town, starts[key], _span(key, roads), tuple(successors.get(key, ()))) for key in sorted(starts)
+    }
+    wide = {key for key, strand in found.items() if strand.width >= NARROWEST}
+    return {
+        key: replace(found[key], successors=tuple(onward for onward in found[key].successors if onward in wide))
+        for key in sorted(wide)
     }
 
 

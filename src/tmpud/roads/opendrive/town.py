@@ -29,11 +29,13 @@ def read_town(path: Path, segment_length: float = SEGMENT_LENGTH) -> RoadNetwork
     try:
         town = carla.Map(map_name(path), text)
         strands, marks = read_strands(town, facts.roads), read_marks(town)
-    except (RuntimeError, ValueError, OverflowError, MemoryError) as error:
+        if all(strand.junction for strand in strands.values()):
+            raise ValueError("there is no lane outside of junctions on which cars drive")
+        return _network(path, facts, strands, marks, _frame(text), segment_length)
+    except ValueError as error:
+        raise MapError(str(path), None, f"{error}") from error
+    except (RuntimeError, LookupError, OverflowError, MemoryError) as error:
         raise MapError(str(path), None, f"CARLA's parser cannot read it: {error}") from error
-    if not any(not strand.junction for strand in strands.values()):
-        raise MapError(str(path), None, "there is no lane outside of junctions on which cars drive")
-    return _network(path, facts, strands, marks, _frame(text), segment_length)
 
 
 def _network(

@@ -1,0 +1,114 @@
+"""Who is followed: the nearest vehicle ahead whose box reaches into the ego's way."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from tmpud.geometry import Point, Pose
+from tmpud.motion.route import SPACING, Route
+from tmpud.scene import Scene, Vehicles
+
+LOOK_AHEAD = 50.0  # [m]
+SAME_LEVEL = 3.0  # [m]
+SIDE_ROOM = 0.25  # [m] kept free beside the ego
+HALVES = (0.5, 0.0, -0.5)
+RIM = [(a, b) for a in HALVES for b in HALVES if a or b]  # eight points on a box's rim, in shares of length and width
+
+
+class Obstacle(NamedTuple):
+    """Something ahead on the route that must not be reached."""
+
+    gap: float  # [m] from the ego's front bumper
+    speed: float  # [m/s] along the route
+
+
+class _Box(NamedTuple):
+    """Where a vehicle is, how fast and how large."""
+
+    x: float  # [m] of its centre
+    y: float  # [m]
+    z: float  # [m]
+    heading: float  # [rad]
+    speed: float  # [m/s]
+    length: float  # [m]
+    width: float  # [m]
+
+
+def leader(scene: Scene, route: Route, station: float) -> Obstacle | None:
+    """Return the nearest vehicle ahead whose box reaches into the ego's way, within LOOK_AHEAD metres."""
+    ego = scene.ego
+    ahead = range(route.index(station), route.index(station + LOOK_AHEAD + ego.length) + 1)
+    rear, nearest = math.inf, None
+    for place, box in sorted(_near(scene, route, ahead)):
+        if place * SPACING > rear + box.length:
+            break  # nor do those that follow come before it
+        reached = _rear(box, route, ahead, place, station, ego.width / 2 + SIDE_ROOM)
+        if reached < rear:
+            rear, nearest = reached, box
+    gap = rear - station - ego.length / 2
+    if nearest is None or gap > LOOK_AHEAD:
+        return None
+    along = route.poses[route.nearest(*_rim(nearest)[0], ahead, ahead.start)].heading
+    return Obstacle(gap, max(nearest.speed * math.cos(nearest.heading - along), 0.0))
+
+
+def _rear(box: _Box, route: Route, ahead: range, i: int, station: float, reach: float) -> float:
+    """Return the station at which a box begins to reach into the way [m]; inf where it keeps off, or is left behind.
+
+    It is near to the route's i-th point.
+    """
+    rim = list[tuple[float, float]]()
+    for x, y in _rim(box):
+        i = route.nearest(x, y, ahead, i)
+        along, across = route.beside(x, y, i)
+        rim.append((i * SPACING + along, across))
+    stations, offsets = zip(*rim, strict=True)
+    if max(stations) <= station or min(offsets) >= reach or max(offsets) <= -reach:
+        return math.inf
+    middle = sum(stations) / len(stations)
+    return min(s if abs(d) < reach else middle for s, d in rim)
+
+
+def _near(scene: Scene, route: Route, ahead: range) -> list[tuple[int, _Box]]:
+    """Return the vehicles on the ego's level that may reach into the way ahead, with the point at which it comes near.
+
+    These are all that do, and perhaps a few more.
+
+    From a place to which a box keeps some metres, the way takes as many to come up to it: so far it need not be looked
+    at. The box is first taken for its circle, then kept from the straight line that goes on from the place.
+    """
+    room = scene.ego.width / 2 + SIDE_ROOM + SPACING
+    near: list[tuple[int, _Box]] = []
+    for box in _boxes(scene.others):
+        circle = math.hypot(box.length, box.width) / 2 + room
+        here, end = ahead.start, ahead.stop if abs(box.z - scene.ego.z) < SAME_LEVEL else 0
+        while here < end:
+            place = route.poses[here]
+            off = math.hypot(box.x - place.x, box.y - place.y) - circle
+            if off < 0.0:
+                off = _beside_line(place, box) - room
+                if off < 0.0:
+                    near.append((here, box))
+                    break
+            here += 1 + int(off / SPACING)
+    return near
+
+
+def _boxes(others: Vehicles) -> list[_Box]:
+    columns = (others.x, others.y, others.z, others.heading, others.speed, others.length, others.width)
+    return [*map(_Box, *(column.tolist() for column in columns))]
+
+
+def _beside_line(line: Pose, box: _Box) -> float:
+    """Return how far a box keeps from a straight line [m], negative where it reaches over it."""
+    turn = box.heading - line.heading
+    across = abs((box.y - line.y) * math.cos(line.heading) - (box.x - line.x) * math.sin(line.heading))
+    return across - (box.length * abs(math.sin(turn)) + box.width * abs(math.cos(turn))) / 2
+
+
+def _rim(box: _Box) -> list[Point]:
+    """Return points on the rim of a box."""
+    cos, sin = math.cos(box.heading), math.sin(box.heading)
+    ends = [(a * box.length, b * box.width) for a, b in RIM]
+    return [(box.x + ahead * cos - left * sin, box.y + ahead * sin + left * cos) for ahead, left in ends]
