@@ -85,3 +85,4 @@ def test_intervals_are_written_with_one_decimal_and_unknown_ends_as_such() -> No
     assert interval(Estimate(1.25, -0.04, 3, 9)) == "1.2 [0.0, 3.0]"
     assert interval(Estimate(1.0, -math.inf, math.inf, 1)) == "1.0 [?, ?]"
     assert interval(Estimate(math.nan, 0, 1000, 0)) == "-"
+    assert interval(Estimate(-0.0087, -0.0206, -0.003, 103)) == "-0.009 [-0.021, -0.003]"

@@ -97,9 +97,11 @@ def statuses_table(cells: Sequence[Cell]) -> Table:
 
 
 def interval(estimate: Estimate, decimals: int = 1) -> str:
-    """Return "value [low, high]"; "?" for an end that is not known."""
+    """Return "value [low, high]", with more decimals for a value that would look like 0; "?" for an unknown end."""
     if math.isnan(estimate.value):
         return NOTHING
+    if estimate.value and not round(estimate.value, decimals):
+        decimals -= math.floor(math.log10(abs(estimate.value)) + decimals)
     value, low, high = (
         f"{round(x, decimals) + 0.0:.{decimals}f}" if math.isfinite(x) else "?"  # + 0.0: no minus before a zero
         for x in (estimate.value, estimate.low, estimate.high)
