@@ -64,7 +64,7 @@ def repeat(options: Options) -> list[Figure]:
             target="1 hash",
             holds=len(set(hashes)) == 1,
             seed=FIRST_SEED,
-            details={"hashes": Counter(hashes)},
+            details={"hashes": dict(Counter(hashes))},
         )
     ]
 
@@ -104,7 +104,7 @@ def left(options: Options) -> list[Figure]:
             target="0",
             holds=not notes,
             seed=FIRST_SEED,
-            details={"ends": Counter(ends), "notes": notes[:20]},
+            details={"ends": dict(Counter(ends)), "notes": notes[:20]},
         )
     ]
 
