@@ -326,7 +326,10 @@ def test_the_version_is_the_packages(tmpud: Tmpud) -> None:
     [
         (("plan",), ["--rules", "--verbose", "--json"]),
         (("asp", "dump"), ["--out"]),
-        (("drive",), ["--algorithm", "--beta", "--traffic", "--out", "--frames", "--json"]),
+        (
+            ("drive",),
+            ["--sim", "--host", "--port", "--algorithm", "--beta", "--traffic", "--out", "--frames", "--json"],
+        ),
     ],
 )
 def test_commands_on_a_journey_take_the_same_options(tmpud: Tmpud, command: tuple[str, ...], others: list[str]) -> None:

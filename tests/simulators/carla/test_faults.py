@@ -102,6 +102,15 @@ def test_after_a_killed_client_nothing_is_left_and_the_next_drive_works(start: S
     assert_drives(start())
 
 
+def test_a_client_killed_between_two_steps_is_tidied_after_when_the_drive_is_closed(
+    start: Start, server: Loopback
+) -> None:
+    drive = start()
+    os.kill(drive.process, signal.SIGKILL)
+    drive.close()
+    assert_left_as_found(server)
+
+
 ABANDONED = """
 import os, signal, sys
 from tmpud.roads import load_map

@@ -101,11 +101,10 @@ class Session:
 
     def close(self) -> None:
         """Leave the server as it was found; a second call does nothing."""
-        if self._process.poll() is not None:
-            return
-        with contextlib.suppress(SimulatorError):
-            self.ask("close", CLOSED)
-            self._process.wait(CLOSED)
+        if self._process.poll() is None:
+            with contextlib.suppress(SimulatorError):
+                self.ask("close", CLOSED)
+                self._process.wait(CLOSED)
         self._end()
 
     def _died(self, asked: str) -> SimulatorError:
