@@ -1,5 +1,7 @@
 """Whole drives on the loopback server: a kinematic one, so nothing here is said of CARLA's physics."""
 
+import math
+import subprocess
 from dataclasses import replace
 from pathlib import Path
 
@@ -7,6 +9,7 @@ import pytest
 from typer.testing import CliRunner
 
 from tests.carla_loopback.running import loopback
+from tests.simulators.nets import netconvert
 from tmpud.cli import app
 from tmpud.errors import SimulatorError
 from tmpud.events import Finished, Header
@@ -88,3 +91,21 @@ def test_a_trial_of_an_experiment_is_the_drive_with_its_options(blocks_xodr: Pat
         server.arm(die_at=1)
         with pytest.raises(SimulatorError):
             work.run(work.prepare(cell.task.shared), cell.task.arguments)
+
+
+def test_on_a_net_that_is_shifted_against_the_servers_map_all_is_where_the_net_has_it(
+    blocks_net: Path, blocks_xodr: Path, tmp_path: Path
+) -> None:
+    shifted = tmp_path / "blocks.net.xml"
+    offset = ["--offset.x", "100", "--offset.y", "50", "--offset.disable-normalization"]
+    subprocess.run([netconvert(), "-s", str(blocks_net), "-o", str(shifted), *offset], check=True)
+    town = load_map(shifted)
+    with loopback(blocks_xodr) as server:
+        at = Address(port=server.port)
+        with CarlaSimulator(town, traffic=3, seed=1, server=at, warm_up=0) as simulator:
+            ego = simulator.reset("a_0", 30.0).ego
+            assert ego.pose == pytest.approx(town.lanes["a_0"].centre.pose_at(30.0), abs=0.1)
+            assert ego.lane == "a_0"
+            assert set(simulator.everyone().lanes) <= town.lanes.keys()
+            places = [place[:2] for place in server.report()["vehicles"].values()]
+    assert any(math.dist((x + 100, -y + 50), ego.pose[:2]) < 0.3 for x, y in places)

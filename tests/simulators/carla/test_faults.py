@@ -98,6 +98,8 @@ def test_after_a_killed_client_nothing_is_left_and_the_next_drive_works(start: S
     os.kill(drive.process, signal.SIGKILL)
     with pytest.raises(SimulatorError, match="ended with -9"):
         drive.step(COAST)
+    with pytest.raises(SimulatorError, match="the session is over"):
+        drive.step(COAST)
     assert_left_as_found(server)
     assert_drives(start())
 

@@ -81,6 +81,8 @@ class Session:
 
     def ask(self, name: str, limit: float, /, **arguments: Any) -> Message:
         """Return the answer; SimulatorError where the process refuses or ends, SimulatorHangError after ``limit`` s."""
+        if self._log.closed:
+            raise SimulatorError(f"CARLA at {self._server}: the session is over")
         try:
             send(self._link, {"do": name, "with": arguments})
             if not self._link.poll(limit):

@@ -15,7 +15,7 @@ from tmpud.geometry import Pose
 from tmpud.roads.network import RoadNetwork
 from tmpud.scene import Control, FloatArray, Scene, Vehicles, VehicleState
 from tmpud.simulators.carla.lanes import LaneFinder
-from tmpud.simulators.carla.messages import Message
+from tmpud.simulators.carla.messages import COLUMNS, Message
 from tmpud.simulators.carla.session import LOADED, Address, Session
 from tmpud.simulators.carla.signals import Signals
 from tmpud.simulators.cars import SENSING_RANGE
@@ -44,7 +44,9 @@ class CarlaSimulator:
         self._lanes: dict[str, str] = {}  # vehicle -> the lane it was last seen on
         self._names: dict[int, str] = {}  # the server's id -> ours, in the order of appearance
         self._way: frozenset[str] = frozenset()  # the announced lanes
-        self._entered = False
+        self._entered, self._zero = False, 0
+        self._shift = np.zeros(COLUMNS)  # from the server's coordinates to the network's
+        self._shift[:2] = network.frame.offset
         self.contacts: list[tuple[float, str]] = []  # what the collision sensor told, once for each other
         rules = rules or TrafficRules()
         self._session = Session(server or Address())
@@ -68,9 +70,8 @@ class CarlaSimulator:
         """Put the ego on a lane, standing, as soon as there is room."""
         if lane not in self._network.lanes:
             raise SimulatorError(f"{self._network.name} has no lane {lane}")
-        x, y, heading = self._network.lanes[lane].centre.pose_at(station)
         self._way = frozenset([lane])
-        self._take(self._session.ask("enter", LOADED, x=x, y=y, heading=heading))
+        self._put("enter", self._network.lanes[lane].centre.pose_at(station))
         self._entered = True
         return self._scene()
 
@@ -95,7 +96,7 @@ class CarlaSimulator:
 
     def park(self, pose: Pose) -> None:
         """Put a car there that stands for ever; one step passes."""
-        self._take(self._session.ask("park", self._session.patience, x=pose.x, y=pose.y, heading=pose.heading))
+        self._put("park", pose)
 
     def settings(self) -> dict[str, Any]:
         """Return the server's settings, as far as they are put back in the end."""
@@ -126,16 +127,23 @@ class CarlaSimulator:
         """Return the row of the first of the others: the ego's is before them."""
         return 1 if self._entered else 0
 
+    def _put(self, what: str, pose: Pose) -> None:
+        """Ask for something to be put at a pose of the network's."""
+        x, y = pose[:2] - self._shift[:2]
+        self._take(self._session.ask(what, LOADED, x=float(x), y=float(y), heading=pose.heading))
+
     def _take(self, message: Message) -> None:
         """Take in what the server shows after a step."""
-        words, self._table = message
+        words, table = message
+        self._table = table + self._shift
         self._ids: list[int] = words["ids"]
         self._frame: int = words["frame"]
         for actor in self._ids:
             self._names.setdefault(actor, f"car{len(self._names):04d}")
         if words["lights"] is not None:
             self._signals.update(words["lights"])
-        self.contacts += [((frame - self._zero) * DT, self._names[other]) for frame, other in words.get("contacts", ())]
+        for frame, other in words.get("contacts", ()):
+            self.contacts.append(((frame - self._zero) * DT, self._names.get(other, f"object{other}")))
 
     def _scene(self) -> Scene:
         others = self._table[1:]
