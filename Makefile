@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: demo test check pytest verify bench town page picture clean
+.PHONY: demo test check pytest verify bench town page picture screenshots clean
 
 demo: $(VENV)/.installed
 	$(BIN)/tmpud demo
@@ -56,6 +56,10 @@ page:
 
 picture: $(VENV)/.installed
 	$(BIN)/python -m tools.picture
+
+# The pictures of docs/replay.md.
+screenshots: $(VENV)/.developing $(VENV)/.browser
+	$(BIN)/python -m tools.screenshots
 
 clean:
 	rm -rf $(VENV) frontend/node_modules runs .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis

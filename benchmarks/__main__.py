@@ -9,7 +9,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from benchmarks import abstract, carla, full_step, growth, highway, load, plan, safety, start, trials
+from benchmarks import abstract, carla, frames, full_step, growth, highway, load, plan, safety, start, trials, view
 from benchmarks.harness import DisagreementError, SkipError
 from benchmarks.report import as_json, headline, table, write
 
@@ -23,6 +23,8 @@ BENCHMARKS: dict[str, ModuleType] = {
     "trials": trials,
     "abstract": abstract,
     "carla": carla,
+    "view": view,
+    "frames": frames,
 }
 
 

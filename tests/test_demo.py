@@ -8,9 +8,12 @@ from pathlib import Path
 import pytest
 
 from tests.viewer.browsing import clock, opened
+from tmpud.cli.driving import DEMO_SEED, DEMO_TRAFFIC
 from tmpud.events import Estimated, Finished, Planned, Refused
-from tmpud.recording import read_run
-from tmpud.viewer.replay import write_replay
+from tmpud.recording import read_run, record
+from tmpud.roads.towns import PAPER_MISSIONS
+from tmpud.runner import Mission, drive
+from tmpud.viewer.replay import write_comparison, write_replay
 
 MEGABYTES = 5  # a page may have
 WORDS = "words.txt"
@@ -64,8 +67,30 @@ def test_the_demos_replay_tells_from_the_page_alone_why_the_plan_changed(demo: P
         why = page.inner_text(".changes li:last-child .why")
         assert "It would have kept plan" in why
         assert f"instead of {refused[-1].safe:.2f}" in why
+        page.click(".changes li:last-child .to-safety")
+        assert page.locator("#safety .maps .cell").count() > 10
+        assert f"{refused[-1].safe:.2f} (sets Safe)" in page.inner_text("#vehicle")
+        page.locator(".scrub").fill("100000")
+        assert clock(page) == 100.0
         before = clock(page)
         page.keyboard.press(" ")
         page.wait_for_function("() => frameTimes.length > 20")
         page.keyboard.press(" ")
         assert clock(page) > before
+
+
+def test_beside_no_com_the_page_shows_what_the_estimate_was_good_for(demo: Path, tmp_path: Path) -> None:
+    start, goal, _ = PAPER_MISSIONS["millbrook"]
+    mission = Mission(map="millbrook", start=start, goal=goal, algorithm="no-com", seed=DEMO_SEED, traffic=DEMO_TRAFFIC)
+    *_, end = record(drive(mission), tmp_path / "no-com")
+    assert isinstance(end, Finished)
+    assert write_comparison(demo / "demo", tmp_path / "no-com", tmp_path / "compare.html") == []
+    assert (tmp_path / "compare.html").stat().st_size < MEGABYTES * 1e6
+    refused = next(event for event in read_run(demo / "demo") if isinstance(event, Refused))
+    with opened(tmp_path / "compare.html") as page:
+        assert f"SUCCESS\t{end.status}" in page.inner_text("#results")
+        parting = page.inner_text("#parting")
+        assert "no-com chose to merge left" in parting
+        assert f"Safe of merge left\t{refused.safe:.2f}, counts as" in parting
+        page.keyboard.press("End")
+        assert end.status in page.inner_text("#moment-2")

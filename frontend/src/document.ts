@@ -1,7 +1,8 @@
 /** The document a page is given (src/tmpud/viewer/document.py tells its units), and how it is unpacked. */
 
 export type Stop = [light: string, links: number[], x0: number, y0: number, x1: number, y1: number];
-export type StepRow = [action: string, from: string, to: string, leg: number, path: number[]];
+export type StepRow = [action: string, from: string, path: number[]];
+export type LaneRow = [id: string, edge: number, width: number, left: number, right: number, line: number[]];
 
 /** A control is safe where c_a acceleration + c_x turning <= limit; null: every control is. */
 export type Plane = [limit: number, byAcceleration: number, byTurning: number] | null;
@@ -16,7 +17,6 @@ export interface Controls {
 export interface Plan {
   name: string;
   time: number;
-  reason: string;
   steps: number[];
   cost: (number | null)[];
   penalty: (number | null)[];
@@ -68,16 +68,13 @@ export interface Finished {
   status: string;
   message: string;
   distance: number;
-  travel_time: number;
-  replans: number;
 }
 
 export interface Document {
-  schema: number;
   mission: Record<string, unknown>;
   versions: Record<string, string>;
   sizes: { ego: [number, number]; car: [number, number] };
-  ground: { lanes: [number, number, number, number[]][]; junctions: number[][]; stops: Stop[] } | null;
+  ground: { edges: [id: string, street: string][]; lanes: LaneRow[]; junctions: number[][]; stops: Stop[] } | null;
   seen: {
     times: number[];
     ego: number[][];
@@ -88,21 +85,41 @@ export interface Document {
   steps: StepRow[];
   plans: Plan[];
   estimates: Estimate[];
-  executed: { time: number; step: number; outcome: string; distance: number }[];
+  executed: { time: number; outcome: string }[];
   judged: Judged[];
   changes: Change[];
   finished: Finished | null;
   missing: string[];
 }
 
-const SCHEMA = 2;
+/** What one of two runs did where they parted. */
+export interface Side {
+  time: number;
+  action: string;
+  from: string;
+  plan: string;
+  number: number; // of the plan
+  road: number | null; // [m] of what is left of the plan
+  penalty: number | null;
+  safe: ([safe: number, adds: number | null] | null)[]; // of the first run's action and of the second's; null: not estimated
+}
 
-/** Read the document out of the page. */
-export async function unpack(): Promise<Document> {
+/** Two runs (src/tmpud/viewer/comparison.py). */
+export interface Comparison {
+  runs: [Document, Document];
+  names: [string, string];
+  notices: string[];
+  parted: { alike: number; sides: [Side | null, Side | null] } | null;
+}
+
+const SCHEMA = 3;
+
+/** Read the document out of the page: that of a run, or of two. */
+export async function unpack(): Promise<Document | Comparison> {
   const text = document.getElementById("run")?.textContent ?? "";
   const bytes = Uint8Array.from(atob(text.trim()), (letter) => letter.charCodeAt(0));
   const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
-  const found = (await new Response(stream).json()) as Document;
+  const found = (await new Response(stream).json()) as (Document | Comparison) & { schema: number };
   if (found.schema !== SCHEMA) throw new Error(`this page shows schema ${SCHEMA}, the run is of schema ${found.schema}`);
   return found;
 }

@@ -36,16 +36,21 @@ function table(view: View, change: Change): HTMLElement {
       { class: row.role.replace(" ", "-"), tabindex: 0, onmouseenter: show(row.steps), onfocus: show(row.steps), onmouseleave: show(null), onblur: show(null) },
       el("td", {}, name, row.role ? el("small", {}, row.role) : null),
       el("td", { class: "arrows", title: actions(view, row) }, arrows(view, row)),
-      el("td", { class: "number" }, metres(row.length)),
-      ...(turns ? [el("td", { class: "number" }, metres(row.turns))] : []),
-      el("td", { class: "number" }, metres(row.before)),
-      el("td", { class: rise ? "number risen" : "number" }, row.after === null ? "barred" : metres(row.after)),
-      el("td", { class: "number" }, el("b", {}, metres(row.total))),
+      cell("road", metres(row.length)),
+      ...(turns ? [cell("turns", metres(row.turns))] : []),
+      cell("penalty before", metres(row.before)),
+      cell("penalty after", row.after === null ? "barred" : metres(row.after), rise ? "risen" : ""),
+      cell("total", el("b", {}, metres(row.total))),
     );
   });
   const head = el("tr", {}, ...heads.map((text, i) => el("th", { class: i > 1 ? "number" : "" }, text)));
   const caption = "The plans it could choose from, the cheapest first, before and after the estimate (point at a row to see it on the map)";
-  return el("div", { class: "wide" }, el("table", {}, el("caption", {}, caption), el("thead", {}, head), el("tbody", {}, ...body)));
+  return el("div", { class: "wide" }, el("table", { class: "plans" }, el("caption", {}, caption), el("thead", {}, head), el("tbody", {}, ...body)));
+}
+
+/** A number; where the window is narrow it stands below its name instead of in a column. */
+function cell(name: string, value: HTMLElement | string, kind = ""): HTMLElement {
+  return el("td", { class: `number ${kind}`, "data-name": name }, value);
 }
 
 function nameOf(view: View, change: Change, row: Candidate): HTMLElement | string {

@@ -2,6 +2,7 @@
 
 import type { Document, Stop } from "./document";
 import { points } from "./run";
+import { type Sign, signs } from "./streets";
 
 export interface Ground {
   roads: Path2D;
@@ -10,9 +11,13 @@ export interface Ground {
   dashes: Path2D;
   stops: { light: string; links: number[]; from: [number, number]; to: [number, number] }[];
   box: [left: number, bottom: number, right: number, top: number] | null;
+  lanes: { id: string; edge: string; half: number; line: Line }[]; // half the width [m], the middle
+  streets: Map<string, string>; // what the street of a road or a lane is called
+  names: Sign[];
+  ids: Sign[];
 }
 
-type Line = [number, number][];
+export type Line = [number, number][];
 
 export function build(doc: Document): Ground {
   const made: Ground = {
@@ -22,10 +27,14 @@ export function build(doc: Document): Ground {
     dashes: new Path2D(),
     stops: (doc.ground?.stops ?? []).map(stop),
     box: null,
+    lanes: [],
+    streets: new Map(),
+    names: [],
+    ids: [],
   };
   const seen: Line = [];
   for (const shape of doc.ground?.junctions ?? []) trace(made.junctions, points(shape), true);
-  for (const [width, left, right, line] of doc.ground?.lanes ?? []) {
+  for (const [id, edge, width, left, right, line] of doc.ground?.lanes ?? []) {
     const centre = points(line);
     const leftSide = beside(centre, width / 200);
     const rightSide = beside(centre, -width / 200);
@@ -33,6 +42,11 @@ export function build(doc: Document): Ground {
     trace(left ? made.dashes : made.edges, leftSide, false);
     if (!right) trace(made.edges, rightSide, false);
     seen.push(...leftSide, ...rightSide);
+    const [road, street] = doc.ground?.edges[edge] ?? ["", ""];
+    made.lanes.push({ id, edge: road, half: width / 200, line: centre });
+    if (!left && street) made.names.push(...signs(street, leftSide));
+    if (!right) made.ids.push(...signs(road, rightSide));
+    if (street) made.streets.set(road, street).set(id, street);
   }
   made.box = box(seen);
   return made;

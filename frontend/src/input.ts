@@ -1,6 +1,8 @@
 /** Keyboard, mouse and touch. */
 
-import { button, nudge, RATES, STEP } from "./transport";
+import type { Stage } from "./stage";
+import { laneAt } from "./streets";
+import { button, RATES, STEP } from "./transport";
 import type { View } from "./view";
 
 const WHEEL = 0.0015; // zoom for each pixel scrolled
@@ -23,8 +25,7 @@ export function wholeTown(view: View): void {
 }
 
 export function follow(view: View): void {
-  view.camera.follow = true;
-  view.camera.scale = Math.max(view.camera.scale, 5);
+  view.camera.track(5);
   view.changed();
 }
 
@@ -38,38 +39,39 @@ function change(view: View, by: number): void {
   if (count) view.explain(view.change === null ? (by > 0 ? 0 : count - 1) : (view.change + by + count) % count);
 }
 
-function faster(view: View, by: number): void {
-  const next = RATES.indexOf(view.rate) + by;
-  view.rate = RATES[Math.min(Math.max(next, 0), RATES.length - 1)];
-  view.changed();
+function faster({ playback }: Stage, by: number): void {
+  const next = RATES.indexOf(playback.rate) + by;
+  playback.rate = RATES[Math.min(Math.max(next, 0), RATES.length - 1)];
+  playback.changed();
 }
 
-export function tools(view: View, dark: () => void): HTMLElement[] {
+export function tools(stage: Stage, dark: () => void): HTMLElement[] {
   return [
-    button("+", "Zoom in (+)", () => zoom(view, 1.4)),
-    button("−", "Zoom out (−)", () => zoom(view, 1 / 1.4)),
-    button("Follow", "Follow the car (f)", () => follow(view)),
-    button("Town", "The whole town (w)", () => wholeTown(view)),
+    button("+", "Zoom in (+)", () => zoom(stage.shown, 1.4)),
+    button("−", "Zoom out (−)", () => zoom(stage.shown, 1 / 1.4)),
+    button("Follow", "Follow the car (f)", () => follow(stage.shown)),
+    button("Town", "The whole town (w)", () => wholeTown(stage.shown)),
     button("Theme", "Light or dark", dark),
   ];
 }
 
-export function keyboard(view: View): void {
+export function keyboard(stage: Stage): void {
+  const { playback } = stage;
   const acts: Record<string, (event: KeyboardEvent) => void> = {
-    " ": () => view.play(!view.playing),
-    ArrowLeft: (event) => nudge(view, event.shiftKey ? -1000 : -STEP),
-    ArrowRight: (event) => nudge(view, event.shiftKey ? 1000 : STEP),
-    Home: () => view.seek(view.run.begin),
-    End: () => view.seek(view.run.end),
-    ",": () => faster(view, -1),
-    ".": () => faster(view, 1),
-    n: () => change(view, 1),
-    p: () => change(view, -1),
-    "+": () => zoom(view, 1.4),
-    "=": () => zoom(view, 1.4),
-    "-": () => zoom(view, 1 / 1.4),
-    f: () => follow(view),
-    w: () => wholeTown(view),
+    " ": () => playback.play(!playback.playing),
+    ArrowLeft: (event) => playback.nudge(event.shiftKey ? -1000 : -STEP),
+    ArrowRight: (event) => playback.nudge(event.shiftKey ? 1000 : STEP),
+    Home: () => playback.seek(0),
+    End: () => playback.seek(playback.end),
+    ",": () => faster(stage, -1),
+    ".": () => faster(stage, 1),
+    n: () => change(stage.shown, 1),
+    p: () => change(stage.shown, -1),
+    "+": () => zoom(stage.shown, 1.4),
+    "=": () => zoom(stage.shown, 1.4),
+    "-": () => zoom(stage.shown, 1 / 1.4),
+    f: () => follow(stage.shown),
+    w: () => wholeTown(stage.shown),
   };
   window.addEventListener("keydown", (event) => {
     const on = event.target as HTMLElement;
@@ -84,6 +86,17 @@ export function keyboard(view: View): void {
     const clicked = event.target instanceof Element ? event.target.closest("button") : null;
     if (event.detail > 0) clicked?.blur();
   });
+}
+
+/** Name the lane under the mouse. */
+export function hovering(canvas: HTMLCanvasElement, view: View, tip: HTMLElement): void {
+  canvas.addEventListener("pointermove", ({ offsetX: px, offsetY: py, buttons, pointerType }) => {
+    const words = buttons || pointerType !== "mouse" ? null : laneAt(view.ground, ...view.camera.ground(px, py));
+    tip.hidden = words === null;
+    tip.textContent = words;
+    tip.style.transform = `translate(${Math.min(px + 14, view.camera.width - 200)}px, ${py + 18}px)`;
+  });
+  canvas.addEventListener("pointerleave", () => (tip.hidden = true));
 }
 
 /** One pointer pans, two zoom. */

@@ -29,17 +29,31 @@ export class Labels {
     if (ego) {
       const [px, py] = this.view.camera.screen(ego.x, ego.y);
       const below = Math.max(20, 2.5 * this.view.camera.scale + 6);
-      this.words("our car", px - 20, py + below, this.colours.ego, this.colours.egoEdge);
+      const name = this.view.name ?? "our car";
+      this.words(name, px - 3.2 * name.length, py + below, this.colours.ego, this.colours.egoEdge);
     }
+    this.ghost();
     if (look) this.judged(look);
     for (const judged of run.doc.judged) {
       const where = Math.abs(judged.time - time) < SHOWN_FOR ? run.carAt(judged.vehicle, time) ?? ego : null;
       if (where) {
         this.ring(where, this.colours.risk);
-        this.tag(where, `${judged.kind.replace("_", " ")} (blame: ${judged.blame})`, this.colours.risk, this.colours.paper);
+        const ahead = judged.time - time;
+        const when = ahead > 50 ? `in ${(ahead / 1000).toFixed(1)} s: ` : "";
+        this.tag(where, `${when}${judged.kind.replace("_", " ")} (blame: ${judged.blame})`, this.colours.risk, this.colours.paper);
       }
     }
     this.scaleBar();
+  }
+
+  /** Above the other run's car, since our own one's name is below it. */
+  private ghost(): void {
+    const { ghost, camera } = this.view;
+    const where = ghost?.run.egoAt(ghost.time);
+    if (!ghost || !where) return;
+    const [px, py] = camera.screen(where.x, where.y);
+    const name = `${ghost.name} (ghost)`;
+    this.words(name, px - 3.2 * name.length, py - Math.max(14, 2.5 * camera.scale), this.colours.ghost, this.colours.egoEdge);
   }
 
   /** The vehicle that sets Safe, and the one that is looked at. */

@@ -1,14 +1,16 @@
 /** Puts the page together and keeps it moving. */
 
-import { caption } from "./caption";
-import { unpack } from "./document";
+import { comparison } from "./comparison";
+import { type Comparison, type Document, unpack } from "./document";
 import { el } from "./elements";
-import { box } from "./ground";
-import { keyboard, pointers, tools, wholeTown } from "./input";
+import { box, build } from "./ground";
+import { keyboard, tools, wholeTown } from "./input";
 import { setDark } from "./palette";
+import { type Pane, pane } from "./pane";
 import { panel } from "./panel";
+import { Playback } from "./playback";
 import { points, Run } from "./run";
-import { Scene } from "./scene";
+import { Stage } from "./stage";
 import { transport } from "./transport";
 import { View } from "./view";
 
@@ -24,55 +26,79 @@ const KEPT = 2000;
 async function main(): Promise<void> {
   const darkness = matchMedia("(prefers-color-scheme: dark)");
   setDark(darkness.matches);
-  const run = new Run(await unpack());
-  const view = new View(run);
-  const canvas = document.getElementById("scene") as HTMLCanvasElement;
-  const scene = new Scene(canvas, view);
-  document.title = `${run.doc.mission.start} → ${run.doc.mission.goal}: tmpud replay`;
-  document.getElementById("panel")?.append(...panel(view));
-  document.getElementById("transport")?.append(...transport(view));
-  document.getElementById("tools")?.append(...tools(view, () => dark(view)));
-  caption(view, document.getElementById("moment") as HTMLElement);
-  keyboard(view);
-  pointers(canvas, view);
-  new ResizeObserver(() => {
-    scene.resize();
-    view.changed();
-  }).observe(canvas);
-  darkness.addEventListener("change", () => dark(view, darkness.matches));
-  scene.resize();
-  firstLook(view);
-  animate(view, scene);
+  const found = await unpack();
+  const two = "runs" in found ? found : null;
+  const stage = staged(two ? two.runs : [found as Document], two);
+  const { playback, views } = stage;
+  const panes = views.map((view) => pane(stage, view));
+  const dark = (on?: boolean) => {
+    setDark(on);
+    playback.changed();
+  };
+  document.title = `${two ? two.names.join(" and ") : views[0].run.route()}: tmpud replay`;
+  part("scenes").append(...panes.map(({ element }) => element));
+  part("panel").append(...(two ? comparison(stage, two) : panel(views[0])));
+  part("transport").append(...transport(stage));
+  part("tools").append(...tools(stage, () => dark()));
+  keyboard(stage);
+  const observer = new ResizeObserver(() => {
+    for (const { resize } of panes) resize();
+    playback.changed();
+  });
+  for (const { element, resize } of panes) {
+    resize();
+    observer.observe(element);
+  }
+  darkness.addEventListener("change", () => dark(darkness.matches));
+  firstLook(stage);
+  animate(playback, panes);
   document.documentElement.dataset.ready = "yes";
 }
 
-/** See all plans at first; without any, the whole town. */
-function firstLook(view: View): void {
-  const way = box(view.run.doc.plans.flatMap((plan) => plan.steps.flatMap((step) => points(view.run.doc.steps[step][4]))));
-  wholeTown(view);
-  if (way) view.camera.fit(way[0] - 60, way[1] - 60, way[2] + 60, way[3] + 60);
-  view.changed();
+function staged(documents: Document[], two: Comparison | null): Stage {
+  const runs = documents.map((one) => new Run(one));
+  const playback = new Playback(Math.max(...runs.map((run) => run.end - run.begin)));
+  const ground = build(documents.find((one) => one.ground) ?? documents[0]);
+  return new Stage(
+    runs.map((run, i) => new View(run, playback, ground, two ? two.names[i] : null)),
+    playback,
+  );
 }
 
-function animate(view: View, scene: Scene): void {
+function part(id: string): HTMLElement {
+  const found = document.getElementById(id);
+  if (!found) throw new Error(`the page lacks its part ${id}`);
+  return found;
+}
+
+/** See all plans at first; without any, the whole town. */
+function firstLook({ views, playback }: Stage): void {
+  const steps = (view: View) => view.run.doc.plans.flatMap((plan) => plan.steps.flatMap((step) => points(view.run.doc.steps[step][2])));
+  const way = box(views.flatMap(steps));
+  wholeTown(views[0]);
+  if (way) views[0].camera.fit(way[0] - 60, way[1] - 60, way[2] + 60, way[3] + 60);
+  playback.changed();
+}
+
+function animate(playback: Playback, panes: Pane[]): void {
   window.frameTimes = [];
   window.drawTimes = [];
   let stale = true;
   let before = 0;
-  view.onChange(() => (stale = true));
+  playback.onChange(() => (stale = true));
   const tick = (now: number) => {
     const passed = now - before;
     before = now;
-    if (view.playing) {
+    if (playback.playing) {
       note(window.frameTimes, passed);
-      view.seek(view.time + Math.min(passed, 250) * view.rate);
-      if (view.time >= view.run.end) view.play(false);
+      playback.seek(playback.elapsed + Math.min(passed, 250) * playback.rate);
+      if (playback.elapsed >= playback.end) playback.play(false);
     }
     if (stale) {
       stale = false;
       const began = performance.now();
-      scene.draw();
-      if (view.playing) note(window.drawTimes, performance.now() - began);
+      for (const { draw } of panes) draw();
+      if (playback.playing) note(window.drawTimes, performance.now() - began);
     }
     requestAnimationFrame(tick);
   };
@@ -82,12 +108,6 @@ function animate(view: View, scene: Scene): void {
 function note(times: number[], value: number): void {
   times.push(value);
   if (times.length > KEPT) times.shift();
-}
-
-/** Change to dark colours or back, or to what the system has changed to. */
-function dark(view: View, on?: boolean): void {
-  setDark(on);
-  view.changed();
 }
 
 main().catch((error: unknown) => {

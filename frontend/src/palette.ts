@@ -16,6 +16,8 @@ export interface Theme {
   driven: string;
   risk: string;
   ink: string;
+  soft: string;
+  ghost: string;
   paper: string;
 }
 
@@ -31,6 +33,8 @@ const LIGHT: Theme = {
   driven: "#111111",
   risk: "#b00020",
   ink: "#15181d",
+  soft: "#59616d",
+  ghost: "#7a2f9d",
   paper: "#ffffff",
 };
 
@@ -46,6 +50,8 @@ const DARK: Theme = {
   driven: "#f2f2f2",
   risk: "#ff6b81",
   ink: "#eceff3",
+  soft: "#a3adba",
+  ghost: "#d3a4f0",
   paper: "#1d2126",
 };
 

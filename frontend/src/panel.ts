@@ -20,19 +20,26 @@ export function panel(view: View): HTMLElement[] {
   const missing = doc.missing.map((text) => el("li", {}, text));
   return [
     summary(view),
-    missing.length ? el("section", { id: "missing" }, el("h2", {}, "Not shown"), el("ul", {}, ...missing)) : null,
+    missing.length ? el("section", { id: "missing", class: "notice" }, el("h2", {}, "Not shown"), el("ul", {}, ...missing)) : null,
     changes(view),
     unsafe(view),
     planInForce(view),
     safety(view),
-    legend(),
+    legend(view),
     keys(),
     repeat(view),
   ].filter((part) => part !== null);
 }
 
-function summary({ run }: View): HTMLElement {
-  const { mission, finished, changes, judged } = run.doc;
+/** A place of a mission with the name of its street, where it has one. */
+export function named({ ground }: View, place: string): string {
+  const street = ground.streets.get(place);
+  return street ? `${street} (${place})` : place;
+}
+
+function summary(view: View): HTMLElement {
+  const { run } = view;
+  const { finished, changes, judged } = run.doc;
   const times = changes.length === 1 ? "once" : changes.length === 2 ? "twice" : `${changes.length} times`;
   const drive = finished
     ? `The car drove ${metres(finished.distance)} in ${run.clock(finished.time)} ${ENDINGS.get(finished.status) ?? `(${finished.status})`}.`
@@ -40,9 +47,8 @@ function summary({ run }: View): HTMLElement {
   const safety = judged.length ? `Unsafe moments judged: ${judged.length}.` : "Nothing unsafe was judged.";
   const said = changes.length ? `It changed its plan ${times}.` : "It kept its first plan.";
   const words = [drive, finished?.message ? `${finished.message}.` : "", said, safety].join(" ");
-  const via = Array.isArray(mission.via) ? mission.via.map(String) : [];
-  const route = [mission.start, ...via, mission.goal].map(String).join(" → ");
-  return el("section", { id: "summary" }, el("h1", {}, route), el("p", {}, words));
+  const heading = view.name === null ? el("h1", {}, run.route((place) => named(view, place))) : null;
+  return el("section", { id: "summary" }, heading, el("p", {}, words));
 }
 
 function changes(view: View): HTMLElement {
@@ -58,6 +64,7 @@ function changes(view: View): HTMLElement {
       "→",
       badge(plan.name, planColour(change.plan)),
       el("span", { class: "headline" }, change.headline),
+      el("span", { class: "more" }, "why?"),
     );
     const body = el("div", { class: "why", hidden: true });
     list.append(el("li", {}, head, body));
@@ -71,7 +78,8 @@ function changes(view: View): HTMLElement {
       }
     });
   });
-  const none = run.doc.changes.length ? null : el("p", {}, "The first plan was driven to its end.");
+  const how = "Before each action the car estimates how safe it would be, as Safe from 0 to 1, and looks for the cheapest plan anew: metres of road and a penalty for what is not safe.";
+  const none = el("p", {}, run.doc.changes.length ? how : "The first plan was driven to its end.");
   return el("section", { id: "changes" }, el("h2", {}, "Why the plan changed"), none, list);
 }
 

@@ -47,7 +47,15 @@ export function planInForce(view: View): HTMLElement {
   return section;
 }
 
-function rows({ run }: View, number: number, driven: number): HTMLElement[] {
+/** The street of a segment, where it has a name, and its lane. */
+export function where({ ground }: View, segment: string): (HTMLElement | string)[] {
+  const lane = segment.replace(/\/\d+$/, "");
+  const street = ground.streets.get(lane);
+  return street ? [street, " ", el("small", {}, lane)] : [lane];
+}
+
+function rows(view: View, number: number, driven: number): HTMLElement[] {
+  const { run } = view;
   const plan = run.doc.plans[number];
   if (!plan) return [el("h2", {}, "No plan")];
   const sum = (values: (number | null)[]) => values.reduce<number>((total, value) => total + (value ?? 0), 0);
@@ -60,7 +68,7 @@ function rows({ run }: View, number: number, driven: number): HTMLElement[] {
       { class: state },
       el("td", {}, mark),
       el("td", {}, `${ARROWS[action] ?? ""} ${ACTIONS[action] ?? action}`),
-      el("td", { class: "where" }, from.replace(/\/\d+$/, "")),
+      el("td", { class: "where" }, ...where(view, from)),
       el("td", { class: "number" }, metres(plan.cost[i])),
       el("td", { class: "number" }, metres(plan.penalty[i])),
     );
@@ -75,8 +83,9 @@ function rows({ run }: View, number: number, driven: number): HTMLElement[] {
   ];
 }
 
-export function legend(): HTMLElement {
-  const items = LEGEND.map(([kind, text]) => el("li", {}, el("span", { class: `key ${kind}` }), text));
+export function legend({ name }: View): HTMLElement {
+  const ghost: [string, string][] = name === null ? [] : [["ghost", "overlaid: the other run's car, and the way it drove; the traffic is that of the run looked at"]];
+  const items = [...LEGEND, ...ghost].map(([kind, text]) => el("li", {}, el("span", { class: `key ${kind}` }), text));
   return el("section", { id: "legend" }, el("h2", {}, "On the map"), el("ul", {}, ...items));
 }
 

@@ -1,6 +1,7 @@
 /** A run in memory: where everything was at any moment, and what was known then. */
 
 import type { Document, Estimate, Plan } from "./document";
+import { clock } from "./playback";
 
 export interface Pose {
   x: number; // [m]
@@ -39,6 +40,7 @@ export class Run {
   readonly speeds: Float64Array; // [m/s] of the ego
   readonly ego: Track;
   readonly cars: Car[];
+  private readonly driven: Float64Array; // [m] until each frame
   private readonly lights: Map<string, [number, string][]>;
 
   constructor(readonly doc: Document) {
@@ -46,6 +48,8 @@ export class Run {
     this.times = sums(seen.times);
     this.ego = track(seen.ego);
     this.speeds = sums(seen.ego[3] ?? []).map((speed) => speed / 100);
+    const moves = this.ego.x.map((x, i) => (i ? Math.hypot(x - this.ego.x[i - 1], this.ego.y[i] - this.ego.y[i - 1]) : 0));
+    this.driven = sums(moves);
     this.cars = seen.cars.map(([id, ...rows]) => ({
       id,
       stretches: rows.map(([first, ...columns]) => ({ first, ...track(columns) })),
@@ -130,11 +134,21 @@ export class Run {
     return fits[fits.length - 1] ?? null;
   }
 
+  /** How far the car has driven [m]. */
+  distanceAt(time: number): number {
+    const { finished } = this.doc;
+    return finished && time >= finished.time - 0.5 ? finished.distance : (this.driven[this.between(time).frame] ?? 0);
+  }
+
+  /** Where it was driven from, and to. */
+  route(named = (place: string) => place): string {
+    const { start, via, goal } = this.doc.mission;
+    return [start, ...(Array.isArray(via) ? via : []), goal].map((place) => named(String(place))).join(" → ");
+  }
+
   /** Time since the drive began, as m:ss.s. */
   clock(time: number): string {
-    const tenths = Math.round(Math.max(time - this.begin, 0) / 100);
-    const seconds = (tenths % 600) / 10;
-    return `${Math.floor(tenths / 600)}:${seconds < 10 ? "0" : ""}${seconds.toFixed(1)}`;
+    return clock(time - this.begin);
   }
 }
 

@@ -5,7 +5,9 @@ import { Labels, type Letter, SHOWN_FOR } from "./labels";
 import type { Look } from "./look";
 import { type Theme, planColour, theme } from "./palette";
 import { type Pose, points } from "./run";
+import { names } from "./streets";
 import { lights, town } from "./townscape";
+import { driven, ghost, traffic } from "./vehicles";
 import type { View } from "./view";
 
 export class Scene {
@@ -22,7 +24,7 @@ export class Scene {
     const ctx = canvas.getContext("2d", { alpha: false });
     if (!ctx) throw new Error("this browser has no canvas");
     this.ctx = ctx;
-    this.paths = view.run.doc.steps.map(([, , , , path]) => points(path));
+    this.paths = view.run.doc.steps.map(([, , path]) => points(path));
   }
 
   /** Take over the size of the canvas on the page. */
@@ -47,13 +49,16 @@ export class Scene {
     ctx.fillRect(0, 0, this.canvas.width, this.canvas.height);
     camera.apply(ctx, this.ratio);
     town(ctx, view, this.colours);
+    ctx.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
+    names(ctx, view, this.colours);
+    camera.apply(ctx, this.ratio);
     this.plans(ego);
-    this.driven();
+    driven(ctx, run, time, this.colours.driven, Math.max(0.25, 1.5 / camera.scale));
     lights(ctx, view);
     const look = this.pointedAt();
     if (look) this.motion(look);
-    this.cars(look);
-    if (ego) this.ego(ego);
+    traffic(ctx, view, this.colours, look?.estimate.worst ?? null);
+    if (view.ghost) ghost(ctx, view.ghost, camera, this.colours);
     ctx.setTransform(this.ratio, 0, 0, this.ratio, 0, 0); // CSS pixels from here on
     new Labels(ctx, view, this.colours).draw(ego, look, this.paths, this.letters);
   }
@@ -131,19 +136,6 @@ export class Scene {
     return [[from.x, from.y], ...line.slice(best + 1)];
   }
 
-  private driven(): void {
-    const { ctx } = this;
-    const { run, time, camera } = this.view;
-    if (!run.times.length) return;
-    const { frame } = run.between(time);
-    ctx.strokeStyle = this.colours.driven;
-    ctx.lineWidth = Math.max(0.25, 1.5 / camera.scale);
-    ctx.beginPath();
-    for (let i = 0; i <= frame; i += 3) ctx.lineTo(run.ego.x[i], run.ego.y[i]);
-    ctx.lineTo(run.ego.x[frame], run.ego.y[frame]);
-    ctx.stroke();
-  }
-
   /** The motion that an estimate judged and that it predicted of a vehicle, a dot for each instant. */
   private motion({ estimate, vehicle, instant }: Look): void {
     const { ctx } = this;
@@ -164,40 +156,6 @@ export class Scene {
     ctx.moveTo(...from);
     ctx.lineTo(...to);
     ctx.stroke();
-  }
-
-  private cars(look: Look | null): void {
-    const { run, time } = this.view;
-    const size = run.doc.sizes.car;
-    run.eachCar(time, (id, pose) => {
-      const risky = id === look?.estimate.worst;
-      this.body(pose, size, risky ? this.colours.risk : this.colours.car, 3);
-    });
-  }
-
-  private ego(pose: Pose): void {
-    const { colours } = this;
-    const [length, width] = this.view.run.doc.sizes.ego;
-    const rim = 2 / this.view.camera.scale;
-    this.body(pose, [length + 2 * rim, width + 2 * rim], colours.egoEdge, 12);
-    this.body(pose, [length, width], colours.ego, 10);
-  }
-
-  /** A vehicle to scale, but never shorter than some pixels; the window tells where its front is. */
-  private body(pose: Pose, [length, width]: [number, number], colour: string, least: number): void {
-    const { ctx, view } = this;
-    const k = Math.max(1, least / view.camera.scale / length);
-    ctx.save();
-    ctx.translate(pose.x, pose.y);
-    ctx.rotate(pose.heading);
-    ctx.scale(k, k);
-    ctx.fillStyle = colour;
-    ctx.fillRect(-length / 2, -width / 2, length, width);
-    if (view.camera.scale * k > 3) {
-      ctx.fillStyle = this.colours.glass;
-      ctx.fillRect(length * 0.12, -width * 0.38, length * 0.16, width * 0.76);
-    }
-    ctx.restore();
   }
 }
 

@@ -2,6 +2,7 @@
 
 import { el, svg } from "./elements";
 import { planColour } from "./palette";
+import { clock, type Playback } from "./playback";
 import type { View } from "./view";
 
 const TOP = 22; // [px] room for the flags
@@ -11,38 +12,24 @@ const HEIGHT = TOP + PLOT + BAND + 4;
 
 export class Timeline {
   readonly element = el("div", { class: "timeline" });
-  private readonly range: HTMLInputElement;
   private readonly head = svg("line", { y1: TOP - 4, y2: HEIGHT, class: "head" });
 
   constructor(private readonly view: View) {
-    const { begin, end } = view.run;
-    this.range = el("input", {
-      type: "range",
-      class: "scrub",
-      min: 0,
-      max: Math.max(end - begin, 1),
-      step: 100,
-      "aria-label": "Time in the drive",
-      oninput: () => view.seek(begin + Number(this.range.value)),
-    });
-    this.element.append(this.plot(), ...this.flags(), this.range);
+    const name = view.name === null ? [] : [el("div", { class: "who" }, view.name)];
+    this.element.append(...name, el("div", { class: "lane" }, this.plot(), ...this.flags()));
     view.onChange(() => this.update());
     this.update();
   }
 
   private update(): void {
-    const { time, run } = this.view;
-    this.range.value = String(Math.round(time - run.begin));
-    this.range.setAttribute("aria-valuetext", run.clock(time));
-    const x = `${this.share(time)}%`;
+    const x = `${(100 * this.view.playback.elapsed) / this.view.playback.end}%`;
     this.head.setAttribute("x1", x);
     this.head.setAttribute("x2", x);
   }
 
   /** Where a moment lies along the strip [%]. */
   private share(time: number): number {
-    const { begin, end } = this.view.run;
-    return (100 * (time - begin)) / (end - begin);
+    return (100 * (time - this.view.run.begin)) / this.view.playback.end;
   }
 
   private plot(): SVGElement {
@@ -70,6 +57,11 @@ export class Timeline {
       const dot = svg("circle", { cx: x, cy: y, r: low ? 5 : 3, class: low ? "dot low" : "dot" }, svg("title", {}, said));
       chart.append(...(low ? [stem] : []), dot);
     }
+    const over = this.share(run.end);
+    if (over < 90) {
+      const words = `${run.doc.finished?.status ?? "the record ends"} at ${run.clock(run.end)}`;
+      chart.append(svg("text", { x: `${over + 0.5}%`, y: TOP + PLOT + BAND + 1, class: "over" }, words));
+    }
     chart.append(this.head);
     return chart;
   }
@@ -95,4 +87,22 @@ export class Timeline {
       return flag;
     });
   }
+}
+
+/** The slider below the strips. */
+export function strip(playback: Playback): HTMLElement {
+  const range = el("input", {
+    type: "range",
+    class: "scrub",
+    min: 0,
+    max: Math.max(playback.end, 1),
+    step: 100,
+    "aria-label": "Time in the drive",
+    oninput: () => playback.seek(Number(range.value)),
+  });
+  playback.onChange(() => {
+    range.value = String(Math.round(playback.elapsed));
+    range.setAttribute("aria-valuetext", clock(playback.elapsed));
+  });
+  return range;
 }

@@ -1,52 +1,49 @@
-/** What the page shows at the moment; everything that draws reads it, and only controls change it. */
+/** What the page shows of a run at the moment; everything that draws reads it, and only controls change it. */
 
 import { Camera } from "./camera";
-import { build, type Ground } from "./ground";
 import type { Estimate } from "./document";
+import type { Ground } from "./ground";
 import { type Look, lookAt, worstOf } from "./look";
+import type { Playback } from "./playback";
 import type { Run } from "./run";
 
 export class View {
   readonly camera = new Camera();
-  readonly ground: Ground;
-  time: number; // [ms]
-  playing = false;
-  rate = 4; // simulated seconds in a second
   change: number | null = null; // which change of plan is being explained
   hovered: number[] | null = null; // the actions of a plan that is pointed at
+  ghost: View | null = null; // another run whose car is drawn, too
+  attended: () => void = () => undefined; // called when something of this run is asked for
   private chosen: Look | null = null; // what of an estimate was asked for
-  private readonly listeners: (() => void)[] = [];
 
-  constructor(readonly run: Run) {
-    this.ground = build(run.doc);
-    this.time = run.begin;
+  constructor(
+    readonly run: Run,
+    readonly playback: Playback,
+    readonly ground: Ground,
+    readonly name: string | null = null, // what the run is called beside another
+  ) {}
+
+  /** The moment of the run [ms]; its end where the page's clock is further. */
+  get time(): number {
+    return Math.min(this.run.begin + this.playback.elapsed, this.run.end);
   }
 
-  /** Call back after each change of the view. */
   onChange(listener: () => void): void {
-    this.listeners.push(listener);
+    this.playback.onChange(listener);
   }
 
   changed(): void {
-    for (const listener of this.listeners) listener();
+    this.playback.changed();
   }
 
   seek(time: number): void {
-    this.time = Math.min(Math.max(time, this.run.begin), this.run.end);
-    this.changed();
-  }
-
-  play(on: boolean): void {
-    if (on && this.time >= this.run.end) this.time = this.run.begin;
-    this.playing = on;
-    this.changed();
+    this.playback.seek(time - this.run.begin);
   }
 
   /** Stop at a moment, close to the car; a second before it where something happened. */
   goTo(time: number, before = 1000): void {
-    this.playing = false;
-    this.camera.follow = true;
-    this.camera.scale = Math.max(this.camera.scale, 9);
+    this.attended();
+    this.playback.playing = false;
+    this.camera.track(9);
     this.seek(time - before);
   }
 

@@ -10,6 +10,7 @@ What most programs need, each imported when it is first used, so that ``import t
 - the parts of the motion level: ``StateMapping`` (f), ``LaneMotionPlanner`` (P^m), ``SafeSetEstimator`` (Algorithm 1)
   with its ``SafetyEstimate``
 - what a simulator reports: ``Scene``, ``VehicleState``, ``Vehicles``, ``Control``; who judges it: ``Judge``
+- what an experiment's folder says: ``read_findings``
 - ``TmpudError``, the root of all errors
 
 The protocols that a part of your own must have are in ``tmpud.protocols``; Algorithm 2 is ``tmpud.execution.tmpud``.
@@ -23,6 +24,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from tmpud.errors import TmpudError
     from tmpud.events import Estimated, Event, Executed, Finished, Frame, Header, Judged, Planned, Refused
+    from tmpud.experiments.kinds import read_findings
     from tmpud.judging.judge import Judge
     from tmpud.motion.mapping import StateMapping
     from tmpud.motion.planner import LaneMotionPlanner
@@ -43,6 +45,7 @@ __version__ = "0.1.0"
 _HOME = {
     "errors": ("TmpudError",),
     "events": ("Estimated", "Event", "Executed", "Finished", "Frame", "Header", "Judged", "Planned", "Refused"),
+    "experiments.kinds": ("read_findings",),
     "judging.judge": ("Judge",),
     "motion.mapping": ("StateMapping",),
     "motion.planner": ("LaneMotionPlanner",),
@@ -94,6 +97,7 @@ __all__ = [
     "Vehicles",
     "drive",
     "load_map",
+    "read_findings",
     "read_rules",
     "read_run",
     "record",

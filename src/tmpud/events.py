@@ -15,6 +15,7 @@ from dataclasses import dataclass, field, fields
 from typing import Any
 
 from tmpud.errors import RunFileError
+from tmpud.showing import ShownAsHtml
 from tmpud.symbols import Action, State, TaskPlan, Transition
 
 SCHEMA_VERSION = 2
@@ -39,7 +40,7 @@ class Header(Event):
 
 
 @dataclass(frozen=True, slots=True)
-class Planned(Event):
+class Planned(Event, ShownAsHtml):
     """The task planner's answer, its terms per transition, and the next best plans."""
 
     leg: int

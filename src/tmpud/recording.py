@@ -18,7 +18,13 @@ LOG = "run.jsonl.gz"
 TIMING = "timing.jsonl"
 PICTURE = "map.png"
 REPLAY = "replay.html"
+COMPARISON = "compare.html"
 NAME = re.compile(r"[a-z0-9][a-z0-9._-]{0,63}")
+
+
+def run_name(words: str) -> str:
+    """Return a name for a run folder that tells what words tell."""
+    return re.sub("[^a-z0-9._]+", "-", words.lower())[-64:].lstrip("._-")
 
 
 def record(events: Iterator[Event], folder: Path) -> Iterator[Event]:
@@ -30,7 +36,7 @@ def record(events: Iterator[Event], folder: Path) -> Iterator[Event]:
         raise RequestError(f"{folder.name!r} is no name for a run: small letters, digits, '.', '_' and '-', at most 64")
     first = list(islice(events, 1))
     folder.mkdir(parents=True, exist_ok=True)
-    for stale in (TIMING, PICTURE, REPLAY):  # of an earlier run: they do not belong to this log
+    for stale in (TIMING, PICTURE, REPLAY, COMPARISON):  # of an earlier run: they do not belong to this log
         (folder / stale).unlink(missing_ok=True)
     with (folder / LOG).open("wb") as raw, gzip.GzipFile("", "wb", 6, raw, mtime=0) as log:
         for event in chain(first, events):

@@ -15,6 +15,7 @@ from benchmarks.peers.compiled import Compiled
 from benchmarks.plan import REPLAN, replan
 from benchmarks.questions import draw, graph_of
 from tests.task.tiny_roads import grid
+from tests.viewer.made_runs import recorded
 from tmpud.presets import Preset
 from tmpud.roads import load_map
 from tmpud.task.asp_planner import AspPlanner
@@ -28,6 +29,7 @@ TINY = {
     "trials": ("--seeds", "1", "--traffic", "3"),
     "abstract": ("--trials", "5", "--rounds", "2"),
     "carla": ("--vehicles", "3", "--steps", "5", "--rounds", "1"),
+    "view": ("--rounds", "1", "--clients", "3", "--traffic", "3", "--goal", "park2e_1"),
 }
 
 
@@ -53,6 +55,15 @@ def test_highway_env_is_skipped_with_a_line_or_takes_part(capsys: pytest.Capture
     assert main(["highway", "--vehicles", "3", "--steps", "250", "--rounds", "1"]) == 0
     (line,) = [line for line in capsys.readouterr().out.splitlines() if line.startswith("highway-env")]
     assert "ms" in line or "skipped" in line
+
+
+def test_frames_are_timed_or_skipped_where_there_is_no_browser(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    run = recorded(tmp_path / "run")
+    assert main(["frames", "--run", str(run), "--frames", "5", "--rounds", "2"]) == 0
+    printed = capsys.readouterr().out
+    assert "skipped" in printed or ("(n = 10, wall clock)" in printed and "2 vehicles" in printed)
 
 
 def test_growth_is_drawn(tmp_path: Path) -> None:

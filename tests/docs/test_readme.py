@@ -13,7 +13,14 @@ import pytest
 README = (Path(__file__).resolve().parents[2] / "README.md").read_text()
 BIN = Path(sys.executable).parent
 COMMANDS = re.findall(r"^\.venv/bin/(tmpud .*)$", README, re.MULTILINE)
-LONG_NAMES = ("paper", "learn-world", "results", "replay", "view")  # long, in need of a result, or without an end
+LONG_NAMES = (
+    "paper",
+    "learn-world",
+    "results",
+    "replay",
+    "export",
+    "view",
+)  # long, in need of a result, or without an end
 LONG = [command for command in COMMANDS if command.split()[1] in LONG_NAMES]
 
 

@@ -48,6 +48,12 @@ def test_the_network_is_the_same_read_from_the_cache(folder: Path) -> None:
     assert uncut == read_sumo_net(town, segment_length=1e9)
 
 
+def test_the_streets_keep_their_names(net: Path, folder: Path) -> None:
+    net.write_text(CROSSING.replace('<edge id="in"', '<edge id="in" name="Mill Street"'))
+    for _ in range(2):
+        assert read_cached(net, 60.0, Reader(), folder, 0).street_names == {"in": "Mill Street"}
+
+
 def test_another_file_of_the_same_content_is_named_as_it_is(net: Path, folder: Path) -> None:
     reader = Reader()
     read_cached(net, 60.0, reader, folder, 0)

@@ -24,6 +24,12 @@ def crossing(tmp_path: Path) -> RoadNetwork:
     return read(tmp_path, CROSSING)
 
 
+def test_streets_have_the_names_that_the_net_gives_them(tmp_path: Path) -> None:
+    path = tmp_path / "named.net.xml"
+    path.write_text(CROSSING.replace('<edge id="in"', '<edge id="in" name="Mill &amp; Co"'))
+    assert read_sumo_net(path).street_names == {"in": "Mill & Co"}
+
+
 def test_lanes_for_pedestrians_are_left_out_and_the_others_keep_their_index(crossing: RoadNetwork) -> None:
     assert crossing.edges["in"] == ("in_1", "in_2")
     assert [crossing.lanes[lane].index for lane in crossing.edges["in"]] == [1, 2]

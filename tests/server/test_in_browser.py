@@ -4,16 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from playwright.sync_api import Page, sync_playwright
 
+from tests.experiments.made_results import GRID, made_results
 from tests.server.asking import Served, served
 from tests.server.test_pages import TASKS, campaign, done, hostile_folder
 from tests.viewer.browsing import CHROMIUM
 from tests.viewer.hostile import NAMES
 from tests.viewer.made_runs import recorded
+from tmpud.experiments.kinds import findings
+from tmpud.experiments.reports.document import write_report
+from tmpud.experiments.reports.table import anchor
+from tmpud.experiments.running.store import read_results
 from tmpud.recording import LOG
 
 
@@ -81,3 +87,44 @@ def test_a_replay_plays_inside_its_page_and_what_came_since_can_be_had(tmp_path:
         replay.locator("#play").click()
         replay.locator("#clock").wait_for()
         assert page.locator("#newer").is_hidden()
+
+
+def test_a_click_leads_from_a_point_to_its_trials_and_on_to_the_replay(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    made_results(tmp_path / "root" / "sweep", replace(GRID, algorithms=("tmpud",), seeds=(1,)))
+    with served(tmp_path / "root") as server, browsing(server) as page:
+        page.click("text=root/sweep")
+        page.locator("#points svg").nth(1).locator("a .mark").click()
+        page.wait_for_selector("h1:has-text('normal')")
+        page.click("text=0: its replay")
+        page.wait_for_selector("text=not the same")
+        replay = page.frame_locator("#frame")
+        replay.locator("#play").click()
+        replay.locator("#clock").wait_for()
+        page.go_back()
+        page.go_back()
+        page.locator("#points svg a").first.focus()
+        page.keyboard.press("Enter")
+        page.wait_for_selector("h1:has-text('heavy')")
+
+
+def test_a_point_of_a_report_leads_to_its_row(tmp_path: Path) -> None:
+    found = findings(read_results(made_results(tmp_path / "sweep")))
+    write_report(tmp_path / "sweep", found.report())
+    shade = "(rows) => rows.map(row => getComputedStyle(row.cells[1]).backgroundColor)"
+    with served(tmp_path) as server, browsing(server, "report.html") as page:
+        page.goto((tmp_path / "sweep" / "report.html").as_uri())
+        rows, links = page.locator("tr[id]"), page.locator("figure a")
+        plain = rows.evaluate_all(shade)
+        for number, cell in enumerate(found.analysis.cells):
+            place = f"#{anchor(cell.condition, cell.algorithm)}"
+            (link,) = [link for link in links.all() if link.get_attribute("xlink:href") == place]
+            assert f"{cell.per_1000.value:.1f} unsafe" in str(link.locator("title").text_content())
+            for act in (link.focus, lambda link=link: link.press("Enter")):
+                act()
+                changed = [was != now for was, now in zip(plain, rows.evaluate_all(shade), strict=True)]
+                assert changed[number]
+            assert page.url.endswith(place)
+            assert sum(changed) == 1

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.experiments.made_results import made_results
 from tests.server.asking import Answer, Served, served
 from tests.viewer.made_runs import header, recorded
 
@@ -45,6 +46,7 @@ def root(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("shown")
     (folder / "secret.txt").write_text(PRIVATE)
     recorded(folder / "below" / "run", [header()])
+    made_results(folder / "below" / "sweep")
     return folder / "below"
 
 
@@ -52,6 +54,15 @@ def root(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def server(root: Path) -> Iterator[Served]:
     with served(root) as server:
         yield server
+
+
+@pytest.fixture(scope="module")
+def places(server: Served) -> tuple[str, ...]:
+    """Return an address of each kind."""
+    run, sweep = server.link("below/run"), server.link("below/sweep")
+    trial = server.ask(f"{sweep}/points/0").text.partition("../trials/")[2].partition('"')[0]
+    ends = ("", "/part", "/points", "/points/0", f"/trials/{trial}", f"/trials/{trial}/part", f"/trials/{trial}/replay")
+    return ("", "list", run, f"{run}/replay", *(sweep + end for end in ends))
 
 
 def refused(answer: Answer, *statuses: int) -> bool:
@@ -70,15 +81,17 @@ def test_its_own_address_is_answered_and_nothing_may_be_kept_or_framed(server: S
 
 
 @pytest.mark.parametrize("host", HOSTS)
-def test_a_forged_host_is_refused(server: Served, host: str) -> None:
+def test_a_forged_host_is_refused(server: Served, places: tuple[str, ...], host: str) -> None:
     forged = host.format(port=server.port, other=server.port + 1)
-    assert refused(server.ask("", headers=[("Host", forged)]), 400, 403)
+    for place in places:
+        assert refused(server.ask(place, headers=[("Host", forged)]), 400, 403)
 
 
 @pytest.mark.parametrize("origin", ORIGINS)
-def test_a_forged_origin_is_refused(server: Served, origin: str) -> None:
+def test_a_forged_origin_is_refused(server: Served, places: tuple[str, ...], origin: str) -> None:
     forged = origin.format(port=server.port, other=server.port + 1)
-    assert refused(server.ask("", headers=[("Host", f"127.0.0.1:{server.port}"), ("Origin", forged)]), 403)
+    for place in places:
+        assert refused(server.ask(place, headers=[("Host", f"127.0.0.1:{server.port}"), ("Origin", forged)]), 403)
 
 
 def test_no_host_two_hosts_and_a_second_origin_are_refused(server: Served) -> None:
@@ -89,17 +102,17 @@ def test_no_host_two_hosts_and_a_second_origin_are_refused(server: Served) -> No
         assert refused(server.ask("", headers=headers), 400, 403)
 
 
-def test_without_the_whole_token_nothing_is_shown(server: Served) -> None:
+def test_without_the_whole_token_nothing_is_shown(server: Served, places: tuple[str, ...]) -> None:
     token = server.token
     wrong = ("", token[:-1], f"{token}x", token.swapcase(), f"%20{token}", f"/{token}", "%00", "%ff", f"?token={token}")
     for start in wrong:
-        for path in ("", "/", "/list", f"/{server.link('below/run')}", "/static/view.css"):
+        for path in ("", "/", "/static/view.css", *(f"/{place}" for place in places)):
             assert refused(server.ask(f"/{start}{path}", bare=True), 403), (start, path)
 
 
 @pytest.mark.parametrize("method", ["POST", "PUT", "DELETE", "PATCH", "OPTIONS", "TRACE", "PROPFIND"])
-def test_nothing_can_be_changed(server: Served, method: str) -> None:
-    for path in ("", server.link("below/run")):
+def test_nothing_can_be_changed(server: Served, places: tuple[str, ...], method: str) -> None:
+    for path in places:
         assert refused(server.ask(path, method), 405)
 
 
@@ -107,10 +120,12 @@ def test_the_head_of_a_page_can_be_asked_for(server: Served) -> None:
     assert (server.ask("", "HEAD").status, server.ask("", "HEAD").text) == (200, "")
 
 
-def test_no_path_leads_to_a_file(server: Served, root: Path) -> None:
+def test_no_path_leads_to_a_file(server: Served, places: tuple[str, ...], root: Path) -> None:
     link = server.link("below/run")
+    trial = next(place for place in places if "/trials/" in place)
     assert server.ask(link).status == server.ask("static/view.css").status == 200
-    starts = ("", "runs/", "experiments/", "static/", f"{link}/")
+    results = (trial.partition("trials/")[0] + "points/", trial.partition("trials/")[0] + "trials/", f"{trial}/")
+    starts = ("", "runs/", "experiments/", "static/", f"{link}/", *results)
     targets = ("secret.txt", "etc/passwd")
     paths = [start + up * n + end for start, up, n, end in product(starts, UPWARDS, (1, 2, 9), targets)]
     paths += [path.format(link=link, folder=root.parent) for path in WRONG]

@@ -47,7 +47,7 @@ def test_ranks_count_merges_and_actions_and_add_up() -> None:
 
 def test_a_cost_below_its_first_value_counts_as_that_value() -> None:
     utility = Utility(TMPUD, {TURN: 3.0}, OptimisticSafe(), {TURN: 5.0})
-    assert utility.total((TURN, TURN)) == ((10.0, 0.0, 0.0), 10_00)
+    assert utility.total((TURN, TURN)) == ((10.0, 0.0, 0.0), 10_00, ((5.0, 0.0, 0.0), (5.0, 0.0, 0.0)))
 
 
 def test_what_cannot_be_driven_is_forbidden() -> None:

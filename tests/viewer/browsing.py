@@ -36,3 +36,9 @@ def clock(page: Page) -> float:
     """Return the seconds of the drive that the page shows."""
     minutes, seconds = page.inner_text("#clock").split(" / ")[0].split(":")
     return 60 * int(minutes) + float(seconds)
+
+
+def picture(page: Page, scene: str = "#scene") -> bytes:
+    """Return a scene as it is drawn now."""
+    page.evaluate("() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
+    return page.locator(scene).screenshot()

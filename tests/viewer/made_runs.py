@@ -97,6 +97,18 @@ def events(**mission: Any) -> list[Event]:
     ]
 
 
+def merging(**mission: Any) -> list[Event]:
+    """Return the run of a driver that keeps plan A: it merges, and collides after a second."""
+    return [
+        header(**{"algorithm": "no-com", **mission}),
+        planned(START, MERGE_NOW, 300.0, {MERGE_LATER: 300.0 + LONGER}, "start"),
+        *(frame(number) for number in range(10)),
+        Judged(11.0, "collision", "car1", "merge", "ego", "5 m/s, 1.0 s after the start of merge"),
+        Executed(11.0, MERGE_NOW[0], "collide", False, 5.0),
+        Finished(11.0, "COLLISION", "", 5.0, 1.0, 0, {"collisions": 1}),
+    ]
+
+
 def recorded(folder: Path, log: Iterable[Event] | None = None) -> Path:
     for _ in record(iter(events() if log is None else log), folder):
         pass

@@ -34,3 +34,12 @@ def test_the_pieces_of_a_stop_line_lie_side_by_side_across_the_lanes_end() -> No
     assert len(pieces) == 2
     assert pieces[0][2:] == pieces[1][:2]
     assert math.isclose(math.dist(pieces[0][:2], pieces[1][2:]), lane.width, abs_tol=0.05)
+
+
+def test_each_lane_names_its_road_and_each_road_its_street() -> None:
+    drawn = ground(MILLBROOK)
+    names = dict(drawn["edges"])
+    assert {name: drawn["edges"][edge][0] for name, edge, *_ in drawn["lanes"]} == {
+        lane.id: lane.edge for lane in MILLBROOK.lanes.values()
+    }
+    assert (names["park1e"], names["avenue3w"]) == ("Park Street", "The Avenue")

@@ -27,7 +27,7 @@ def test_a_whole_run_misses_nothing(tmp_path: Path) -> None:
     assert [to_json(event) for event in run.events] == told
     assert run.frames == [event for event in events() if isinstance(event, Frame)]
     assert [plan["name"] for plan in document["plans"]] == ["A", "B"]
-    assert all(step[4] for step in document["steps"])
+    assert all(step[2] for step in document["steps"])
 
 
 @pytest.mark.parametrize("share", [0.5, 0.8, 0.99])
@@ -40,8 +40,30 @@ def test_a_run_that_breaks_off_shows_what_is_intact_and_says_so(tmp_path: Path, 
     except RunFileError as error:
         assert "no header" in str(error)  # noqa: PT017 - so short a file may hold no whole line
         return
-    assert any("everything after line" in line for line in missing)
+    assert [line for line in missing if "the run has no end: it is still going on, or was cut off after line" in line]
+    assert not any("damaged" in line for line in missing)
     assert (tmp_path / "page.html").stat().st_size > 10_000
+
+
+def test_a_run_that_has_only_begun_is_said_to_have(tmp_path: Path) -> None:
+    folder = recorded(tmp_path / "run")
+    (folder / LOG).write_bytes((folder / LOG).read_bytes()[:10])
+    with pytest.raises(RunFileError, match="it has only begun, or was cut off"):
+        read_intact(folder)
+
+
+def test_only_the_end_mark_of_a_finished_log_may_be_missing_without_a_word(tmp_path: Path) -> None:
+    folder = recorded(tmp_path / "run")
+    (folder / LOG).write_bytes((folder / LOG).read_bytes()[:-8])
+    assert read_intact(folder).missing == []
+
+
+def test_a_byte_that_was_changed_is_damage(tmp_path: Path) -> None:
+    folder = recorded(tmp_path / "run")
+    whole = bytearray((folder / LOG).read_bytes())
+    whole[-5] ^= 0xFF  # of the length
+    (folder / LOG).write_bytes(whole)
+    assert "everything after line" in read_intact(folder).missing[0]
 
 
 def test_damaged_lines_are_left_out_and_named(tmp_path: Path) -> None:
@@ -67,7 +89,7 @@ def write_lines(folder: Path, lines: list[str]) -> None:
 def test_no_damage_to_a_value_ends_in_anything_but_a_page_or_one_line(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("tmpud.viewer.document.load_map", cache(load_map))
+    monkeypatch.setattr("tmpud.viewer.paths.load_map", cache(load_map))
     rows = [to_json(event) for event in events()]
     rng = random.Random(5)
     step = ["a", 0, "forward", "b", 0]

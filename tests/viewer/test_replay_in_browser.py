@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Page
 
-from tests.viewer.browsing import clock, opened
+from tests.viewer.browsing import clock, opened, picture
 from tests.viewer.hostile import NAMES
 from tests.viewer.made_runs import SHARES, decision, events, frame, header, recorded
 from tmpud.events import Estimated, Event
@@ -25,12 +25,6 @@ MEAN_SHADE = """() => {
     const cells = [...document.querySelectorAll(".cell")], widths = cells.map(cell => cell.getBBox().width);
     return sum(cells.map((cell, i) => widths[i] * cell.getAttribute("fill-opacity"))) / sum(widths);
 }"""
-
-
-def picture(page: Page) -> bytes:
-    """Return the scene as it is drawn now."""
-    page.evaluate("() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
-    return page.locator("#scene").screenshot()
 
 
 @pytest.fixture(scope="module")
@@ -194,11 +188,34 @@ def test_a_log_of_schema_1_shows_the_curve_and_says_what_it_lacks(tmp_path: Path
         assert "schema 1" in page.inner_text(".maps")
 
 
-def test_it_fits_a_telephone(file: Path) -> None:
-    with opened(file, width=390, height=844) as page:
-        assert page.evaluate("document.documentElement.scrollWidth") <= 390
+@pytest.mark.parametrize("width", [390, 800, 900, 1280])
+def test_nothing_is_cut_off_in_a_narrow_window(file: Path, width: int) -> None:
+    with opened(file, width=width, height=844) as page:
         page.click(".flag.replan")
         assert page.locator(".why").is_visible()
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
+        assert page.evaluate(CUT_OFF) == []
+        assert "penalty after" in page.inner_text(".why table") or width < 500
+
+
+# Texts of cells of which a part lies outside the panel or that are wider than their cell
+CUT_OFF = """() => {
+    const edge = document.querySelector("#panel").getBoundingClientRect().right;
+    const cells = [...document.querySelectorAll("#panel td")];
+    return cells.filter(cell => cell.getBoundingClientRect().right > edge || cell.scrollWidth > cell.clientWidth + 1)
+        .map(cell => cell.textContent);
+}"""
+
+
+def test_the_mouse_finds_out_what_a_lane_is_called(page: Page) -> None:
+    page.keyboard.press("f")
+    box = page.locator("#scene").bounding_box()
+    assert box is not None
+    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)  # over our car
+    assert page.inner_text(".tip") == "Park Street, lane park1e_0"
+    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + 60)
+    assert page.is_hidden(".tip")
+    assert page.inner_text("h1") == "Park Street (park1e_0) → Park Street (park2e_1)"
 
 
 def test_hostile_names_are_shown_and_do_nothing(tmp_path: Path) -> None:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import json
-import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from tmpud.cli.filming import Cutting, Films, write_films
 from tmpud.cli.options import TOWN, Algorithm, Beta, Journey, Json, Out, Seed, Simulated, Traffic, grouped
 
 if TYPE_CHECKING:
@@ -40,11 +40,17 @@ def drive(
     traffic: Traffic = 120,
     out: Out = None,
     frames: Annotated[bool, typer.Option(help="Record all traffic ten times a second, for the replay.")] = True,
+    *,
+    films: Films,
     as_json: Json = False,
 ) -> None:
     """Drive one mission in a simulator's traffic. The run is judged and written into a folder."""
     from tmpud.cli.simulating import map_of, simulator
     from tmpud.runner import Mission
+
+    if films and not frames:
+        raise typer.BadParameter("an animation needs what --no-frames leaves out.", param_hint="'--no-frames'")
+    films.check()
 
     mission = Mission(
         map=map_of(where, journey.map),
@@ -58,17 +64,26 @@ def drive(
         preset=journey.preset,
     )
     folder = out or Path("runs") / _name(mission)
-    _drive(mission, folder, simulator(where), as_json=as_json, frames=frames)
+    _drive(mission, folder, simulator(where), as_json=as_json, frames=frames, films=films)
 
 
 def _name(mission: Mission) -> str:
     """Return what a mission's run folder is called where its user does not say."""
+    from tmpud.recording import run_name
+
     town = Path(mission.map).name.split(".")[0]
-    words = f"{town}-{mission.preset}-{mission.algorithm}-{mission.seed}".lower()
-    return re.sub("[^a-z0-9._]+", "-", words)[-64:].lstrip("._-")
+    return run_name(f"{town}-{mission.preset}-{mission.algorithm}-{mission.seed}")
 
 
-def _drive(mission: Mission, folder: Path, simulator: SimulatorFactory, *, as_json: bool, frames: bool = True) -> None:
+def _drive(
+    mission: Mission,
+    folder: Path,
+    simulator: SimulatorFactory,
+    *,
+    as_json: bool,
+    frames: bool = True,
+    films: Films | None = None,
+) -> None:
     from tmpud.events import Event
     from tmpud.execution.timing import Stopwatch
     from tmpud.presets import preset_named
@@ -76,6 +91,7 @@ def _drive(mission: Mission, folder: Path, simulator: SimulatorFactory, *, as_js
     from tmpud.roads.loading import load_map
     from tmpud.runner import drive as run
     from tmpud.story import Story, summarise
+    from tmpud.viewer.intact import read_intact
     from tmpud.viewer.picture import draw_run
 
     watch, story = Stopwatch(), Story()
@@ -89,6 +105,8 @@ def _drive(mission: Mission, folder: Path, simulator: SimulatorFactory, *, as_js
     draw_run(load_map(mission.map, preset_named(mission.preset).segment_length), events, folder / PICTURE)
     summary = summarise(events) | {"latency_ms": watch.summary()}
     _report(summary, folder, as_json=as_json)
+    if films:
+        write_films(read_intact(folder), films, Cutting())
     if summary["status"] != "SUCCESS":
         raise typer.Exit(1)
 

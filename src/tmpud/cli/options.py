@@ -16,9 +16,9 @@ import typer
 TOWN = "millbrook"
 
 
-def _number(value: float) -> float:
+def number(value: float | None) -> float | None:
     """Refuse nan, which some versions of typer find in every range."""
-    if math.isnan(value):
+    if value is not None and math.isnan(value):
         raise typer.BadParameter(f"{value} is not a number.")
     return value
 
@@ -47,7 +47,7 @@ Algorithm = Annotated[
         help="tmpud weighs Safe against distance, threshold refuses actions below --beta, no-com ignores Safe."
     ),
 ]
-Beta = Annotated[float, typer.Option(min=0.0, max=1.0, callback=_number, help="The least Safe that threshold accepts.")]
+Beta = Annotated[float, typer.Option(min=0.0, max=1.0, callback=number, help="The least Safe that threshold accepts.")]
 Missions = Annotated[str, typer.Option(help="paper, or random:N: N random missions over which the trials are spread.")]
 Jobs = Annotated[int, typer.Option(min=1, max=256, help="Worker processes; they never change a result.")]
 Folder = Annotated[

@@ -56,7 +56,7 @@ class Deliberation:
         if new == old:
             return False
         utility = Utility(self.preset, self.known.cost, self.known.safe, {})
-        new_sum, old_sum = (sum(utility.total(plan)[0]) for plan in (new, old))
+        new_sum, old_sum = (sum(utility.total(plan).terms) for plan in (new, old))
         return old_sum - new_sum >= self.preset.hysteresis - 1e-9
 
     @property

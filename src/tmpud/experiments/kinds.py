@@ -4,23 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tmpud.errors import RunFileError
 from tmpud.experiments.reports.analysis import Analysis, analyse, report
 from tmpud.experiments.reports.document import Picture, Report
-from tmpud.experiments.running.store import Results, provenance
+from tmpud.experiments.running.store import Results, provenance, read_results
 from tmpud.experiments.running.tasks import Record, results_hash
 from tmpud.experiments.statistics.paper_numbers import FIGURE4, TABLE1, Reference
 from tmpud.experiments.statistics.rows import TrialRow
 from tmpud.experiments.trials.figure4 import Figure4
 from tmpud.experiments.trials.figure4 import deviations as figure4_deviations
-from tmpud.experiments.trials.grid import Grid
+from tmpud.experiments.trials.grid import Cell, Grid, cells
 from tmpud.experiments.trials.grid import rows as grid_rows
 from tmpud.experiments.trials.table1 import CARLA_DEVIATIONS
 from tmpud.experiments.trials.table1 import DEVIATIONS as TABLE1_DEVIATIONS
+
+if TYPE_CHECKING:
+    from tmpud.experiments.reports.charts import Panel
 
 RESAMPLING_SEED = 1
 Rows = Callable[[Mapping[str, Any], Iterable[Record]], Iterable[TrialRow]]
@@ -33,6 +37,7 @@ class Kind:
     title: str
     rows: Rows  # of the manifest's options and the records
     reference: Reference
+    cells: Callable[[Mapping[str, Any]], list[Cell]] | None = None  # of the options, where it was driven in traffic
     batches: bool = False  # whether bars show the spread over batches, as in the paper's figure
     deviations: Callable[[Iterable[Record]], Sequence[str]] = lambda _: ()
 
@@ -41,13 +46,21 @@ def _of_grid(options: Mapping[str, Any], records: Iterable[Record]) -> Iterable[
     return grid_rows(Grid.from_json(options), records)
 
 
+def _cells(options: Mapping[str, Any]) -> list[Cell]:
+    return cells(Grid.from_json(options))
+
+
 def _of_figure(options: Mapping[str, Any], records: Iterable[Record]) -> Iterable[TrialRow]:
     return Figure4.from_json(options).rows(records)
 
 
 KINDS = {
     "table1": Kind(
-        title="Full simulation: Table I", rows=_of_grid, reference=TABLE1, deviations=lambda _: TABLE1_DEVIATIONS
+        title="Full simulation: Table I",
+        rows=_of_grid,
+        cells=_cells,
+        reference=TABLE1,
+        deviations=lambda _: TABLE1_DEVIATIONS,
     ),
     "table1-carla": Kind(
         title="Full simulation on a CARLA server: Table I",
@@ -62,7 +75,7 @@ KINDS = {
         batches=True,
         deviations=figure4_deviations,
     ),
-    "sweep": Kind(title="A sweep in full simulation", rows=_of_grid, reference={}),
+    "sweep": Kind(title="A sweep in full simulation", rows=_of_grid, cells=_cells, reference={}),
 }
 
 
@@ -95,13 +108,34 @@ class Findings:
             deviations=self.kind.deviations(self.results.records),
         )
 
-    def picture(self) -> Picture:
-        """Draw mean distance against unsafe trials, a panel per condition."""
-        from tmpud.experiments.reports.charts import batch_panels, draw, interval_panels
+    def _repr_html_(self) -> str:
+        """Return the tables and the picture for a notebook."""
+        from tmpud.experiments.reports.document import render
 
-        panels = batch_panels(self.analysis.pairs) if self.kind.batches else interval_panels(self.analysis.cells)
-        bars = "one standard deviation over the batches" if self.kind.batches else "95 % intervals"
-        return draw(panels, self.kind.reference, "figure", f"Distance against unsafe trials; bars: {bars}.")
+        return render("sections.html", self.report())
+
+    @property
+    def bars(self) -> str:
+        """What the bars of a picture show."""
+        return "one standard deviation over the batches" if self.kind.batches else "95 % intervals"
+
+    def panels(self) -> tuple[Panel, ...]:
+        """Return mean distance against unsafe trials, a panel per condition, points in the order of the cells."""
+        from tmpud.experiments.reports.charts import batch_panels, interval_panels
+
+        return batch_panels(self.analysis.pairs) if self.kind.batches else interval_panels(self.analysis.cells)
+
+    def picture(self) -> Picture:
+        """Draw the panels."""
+        from tmpud.experiments.reports.charts import draw
+
+        caption = f"Distance against unsafe trials; bars: {self.bars}."
+        return draw(self.panels(), self.kind.reference, "figure", caption)
+
+
+def read_findings(folder: str | Path) -> Findings:
+    """Return what an experiment's folder says; raises RunFileError."""
+    return findings(read_results(Path(folder)))
 
 
 def findings(results: Results) -> Findings:

@@ -26,12 +26,12 @@ _CODE = Path(__file__).parent
 _END = "end"
 
 
-def cache_folder() -> Path | None:
-    """Return where maps are kept, None where the user wants none or has no home."""
+def cache_folder(of: str = "maps") -> Path | None:
+    """Return where maps, or other things, are kept; None where the user wants none kept or has no home."""
     if os.environ.get("TMPUD_NO_CACHE"):
         return None
     try:
-        return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "tmpud" / "maps"
+        return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "tmpud" / of
     except RuntimeError:
         return None
 

@@ -9,6 +9,7 @@ from tmpud.errors import MapError
 from tmpud.roads.cache import LARGE, cache_folder, read_cached
 from tmpud.roads.network import SEGMENT_LENGTH, RoadNetwork
 from tmpud.roads.sumo_net import read_sumo_net
+from tmpud.roads.towns import street_names
 from tmpud.roads.xml_reading import shown
 
 OPENDRIVE = ".xodr"
@@ -44,7 +45,10 @@ def load_map(name_or_path: str | Path, segment_length: float = SEGMENT_LENGTH) -
     file = map_file(name_or_path)
     if file.suffix != OPENDRIVE:
         read = partial(read_sumo_net, segment_length=segment_length)
-        return read_cached(file, segment_length, read, cache_folder(), LARGE)
+        network = read_cached(file, segment_length, read, cache_folder(), LARGE)
+        if str(name_or_path) in shipped_towns():
+            network.street_names = street_names(network.edges)
+        return network
     from tmpud.roads.opendrive.reading import read_opendrive
 
     read = partial(read_opendrive, segment_length=segment_length)

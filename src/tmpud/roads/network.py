@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from tmpud.geometry import Point, Polyline
+from tmpud.showing import ShownAsSvg
 from tmpud.symbols import Action
 
 SEGMENT_LENGTH = 60.0  # [m]
@@ -109,7 +110,7 @@ class Frame:
 
 
 @dataclass(slots=True)
-class RoadNetwork:
+class RoadNetwork(ShownAsSvg):
     """Lanes, lane segments, connections, junctions and signals of one map. Not changed after it is built."""
 
     name: str
@@ -123,6 +124,7 @@ class RoadNetwork:
     warnings: tuple[str, ...] = ()
     parts: Mapping[str, str] = field(default_factory=dict)  # the source's id of a part of a lane -> the lane
     segment_length: float = SEGMENT_LENGTH  # [m] longest segment; inf: one per lane
+    street_names: Mapping[str, str] = field(default_factory=dict)  # edge -> what its signs say, where it is known
     segments: dict[str, Segment] = field(init=False)
     edges: dict[str, tuple[str, ...]] = field(init=False)  # edge -> its lanes, rightmost first
     internal: dict[str, int] = field(init=False)  # lane through a junction -> index of its connection

@@ -27,7 +27,7 @@ def map_name(path: Path) -> str:
 def to_rows(network: RoadNetwork) -> Iterator[tuple[str, list[Row]]]:
     """Yield a network in the types of JSON, some rows at a time; connections name lanes by their number."""
     number = {lane: i for i, lane in enumerate(network.lanes)}
-    yield "map", [[network.digest, _values(network.frame), network.warnings]]
+    yield "map", [[network.digest, _values(network.frame), network.warnings, network.street_names]]
     kinds = {
         "lanes": map(_lane_row, network.lanes.values()),
         "connections": (
@@ -54,7 +54,7 @@ def from_rows(blocks: Iterable[tuple[str, list[Row]]], file: Path, segment_lengt
     for kind, rows in blocks:
         found[kind] += [make[kind](*row) for row in rows]
         ids += [row[0] for row in rows if kind == "lanes"]
-    ((digest, (offset, projection), warnings),) = found["map"]
+    ((digest, (offset, projection), warnings, street_names),) = found["map"]
     return RoadNetwork(
         name=map_name(file),
         lanes={lane.id: lane for lane in found["lanes"]},
@@ -67,6 +67,7 @@ def from_rows(blocks: Iterable[tuple[str, list[Row]]], file: Path, segment_lengt
         warnings=tuple(warnings),
         parts=dict(found["parts"]),
         segment_length=segment_length,
+        street_names=street_names,
     )
 
 

@@ -54,6 +54,7 @@ def read_sumo_net(path: Path, *, turnarounds: bool = False, segment_length: floa
         digest=digest,
         warnings=tuple(_warnings(rows, functions, lanes, links)),
         segment_length=segment_length,
+        street_names=_street_names(edges, lanes),
     )
 
 
@@ -107,6 +108,11 @@ def _open_lanes(rows: dict[str, list[Element]], functions: dict[str, str]) -> di
         for lane in row
         if open_to_cars(lane)
     }
+
+
+def _street_names(edges: dict[str, Element], lanes: dict[str, Lane]) -> dict[str, str]:
+    named = ((edge, edges[edge].text("name", "")) for edge in dict.fromkeys(lane.edge for lane in lanes.values()))
+    return {edge: name for edge, name in named if name}
 
 
 def _lane(edge_id: str, element: Element) -> Lane:

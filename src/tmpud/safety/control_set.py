@@ -54,19 +54,20 @@ class HalfPlane(NamedTuple):
         return HalfPlane(*(values[where] for values in self))
 
 
-class SafeSets(NamedTuple):
-    """U_i^S of N vehicles at T instants: all of Delta x Theta, or where ``cut`` a half-plane of it."""
-
-    cut: NDArray[np.bool_]  # (N, T)
-    plane: HalfPlane  # of the K cut ones, row by row
-
-
 class Controls(NamedTuple):
     """The rectangle Delta x Theta; neither range may be reversed, and Theta must not be a single value."""
 
     acceleration: tuple[float, float]  # Delta [m/s^2]
     turning: tuple[float, float]  # Theta [rad] or [rad/s]
     steering: bool  # whether Theta holds steering angles, else yaw rates
+
+
+class SafeSets(NamedTuple):
+    """U_i^S of N vehicles at T instants: all of Delta x Theta, or where ``cut`` a half-plane of it."""
+
+    cut: NDArray[np.bool_]  # (N, T)
+    plane: HalfPlane  # of the K cut ones, row by row
+    controls: Controls  # Delta x Theta
 
 
 def safety_index(ego: Trajectory, others: Vehicles, predicted: FloatArray, preset: Preset) -> SafetyIndex:

@@ -15,12 +15,13 @@ from tmpud.roads.network import RoadNetwork
 from tmpud.safety import control_set, neighbours
 from tmpud.safety.share import exact_share, sampled_share
 from tmpud.scene import FloatArray, Scene, Vehicles
+from tmpud.showing import ShownAsSvg
 from tmpud.symbols import Transition
 from tmpud.trajectory import Trajectory, predict
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class SafetyEstimate:
+class SafetyEstimate(ShownAsSvg):
     """Safe(<s, a, s'>) and what it was made of: N vehicles looked at, T instants."""
 
     safe: float  # min_i o_i*, in [0, 1]; 1.0 without vehicles
@@ -106,7 +107,7 @@ class SafeSetEstimator:
             o[cut] = sampled_share(plane, self._controls, self._preset.samples, rng)
         else:
             o[cut] = exact_share(plane, self._controls)
-        return control_set.SafeSets(cut, plane), o
+        return control_set.SafeSets(cut, plane, self._controls), o
 
 
 def aggregate(o: FloatArray, preset: Preset) -> FloatArray:

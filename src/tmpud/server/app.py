@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import asyncio
-import hashlib
 import time
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
 from starlette.applications import Starlette
 from starlette.concurrency import run_in_threadpool
 from starlette.exceptions import HTTPException
@@ -19,9 +17,11 @@ from starlette.routing import Route
 
 from tmpud.errors import TmpudError
 from tmpud.server.index import EXPERIMENT, RUN, Entry, Index, read_file
-from tmpud.server.replays import Replays
+from tmpud.server.rendering import Templates
+from tmpud.server.replays import replays
 from tmpud.server.security import REPLAY_POLICY, REPORT_POLICY, Guard
 from tmpud.server.summaries import REPORT, Summaries, Summary
+from tmpud.server.trial_pages import TrialPages
 
 PATIENCE = 1.0  # [s] spent on reading what is new before an answer
 LARGEST = 50_000_000  # bytes of a report
@@ -30,13 +30,15 @@ STATIC = {"view.css": "text/css", "view.js": "text/javascript"}
 
 def make_app(roots: Sequence[Path], port: int, token: str) -> Guard:
     """Return the server's application; all below ``roots`` can be read by who knows the token."""
-    pages = _Pages(Index(roots))
+    index, templates = Index(roots), Templates()
+    pages = _Pages(index, templates)
     routes = [
         Route("/", pages.list),
         Route("/list", pages.list_part),
         Route("/static/{name}", pages.static),
         Route("/runs/{id}/replay", pages.replay),
         Route("/experiments/{id}/report", pages.report),
+        *TrialPages(index, templates, pages.show).routes(),
         Route("/{kind}/{id}", pages.entry),
         Route("/{kind}/{id}/part", pages.entry_part),
     ]
@@ -46,25 +48,23 @@ def make_app(roots: Sequence[Path], port: int, token: str) -> Guard:
 
 
 class _Pages:
-    def __init__(self, index: Index) -> None:
-        self._index, self._summaries, self._replays = index, Summaries(), Replays()
-        self._templates = Environment(
-            loader=PackageLoader("tmpud.server"), autoescape=True, undefined=StrictUndefined, trim_blocks=True
-        )
+    def __init__(self, index: Index, templates: Templates) -> None:
+        self._index, self._templates = index, templates
+        self._summaries, self._replays = Summaries(), replays()
         files = Path(__file__).parent / "static"
         self._static = {name: ((files / name).read_bytes(), kind) for name, kind in STATIC.items()}
 
     def list(self, _: Request) -> Response:
-        return self._page("list.html", self._list())
+        return self._templates.live_page("list.html", self._list())
 
     def list_part(self, request: Request) -> Response:
-        return self._part(request, "list_part.html", self._list())
+        return self._templates.part(request, "list_part.html", self._list())
 
     def entry(self, request: Request) -> Response:
-        return self._page("entry.html", self._entry(request))
+        return self._templates.live_page("entry.html", self._entry(request))
 
     def entry_part(self, request: Request) -> Response:
-        return self._part(request, "entry_part.html", self._entry(request))
+        return self._templates.part(request, "entry_part.html", self._entry(request))
 
     def static(self, request: Request) -> Response:
         if (file := self._static.get(request.path_params["name"])) is None:
@@ -80,8 +80,12 @@ class _Pages:
 
     async def replay(self, request: Request) -> Response:
         entry = await run_in_threadpool(self._found, request, RUN)
+        return await self.show(entry.folder)
+
+    async def show(self, folder: Path) -> Response:
+        """Answer with the replay of a run folder."""
         try:
-            page = await self._replays.page(entry.folder)
+            page = await self._replays.of(folder)
         except TmpudError as error:
             raise HTTPException(404, str(error)) from error
         except asyncio.CancelledError:  # the server ends
@@ -105,27 +109,6 @@ class _Pages:
             raise HTTPException(404, "There is no such run or experiment (any more).")
         return entry
 
-    def _page(self, template: str, told: dict[str, Any]) -> Response:
-        return HTMLResponse(self._render(template, {**told, "seen": self._seen(template, told)}))
-
-    def _part(self, request: Request, template: str, told: dict[str, Any]) -> Response:
-        """Answer with a part of a page, or with nothing where it is as it was seen."""
-        text = self._render(template, told)
-        if request.query_params.get("seen") == (seen := _digest(text)):
-            return Response(status_code=204)
-        return HTMLResponse(text, headers={"X-Seen": seen})
-
-    def _seen(self, template: str, told: dict[str, Any]) -> str:
-        return _digest(self._render(template.replace(".html", "_part.html"), told))
-
-    def _render(self, template: str, told: dict[str, Any]) -> str:
-        text = self._templates.get_template(template).render(told)
-        return text.encode(errors="replace").decode()  # half a surrogate pair has no UTF-8
-
 
 def _of(rows: Sequence[tuple[Entry, Summary]], kind: str) -> Sequence[tuple[Entry, Summary]]:
     return [row for row in rows if row[0].kind == kind]
-
-
-def _digest(text: str) -> str:
-    return hashlib.sha256(text.encode()).hexdigest()[:16]

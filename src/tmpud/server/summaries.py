@@ -122,7 +122,7 @@ def _experiment(folder: Path) -> Summary:
         share=min(ended / total, 1.0) if total > 0 else 1.0,
         shown=is_file(folder / REPORT),
         changed=_clock((folder / store.RESULTS).stat().st_mtime),
-        version=f"{(folder / REPORT).stat().st_mtime_ns}" if is_file(folder / REPORT) else "",
+        version=f"{ended} {(folder / REPORT).stat().st_mtime_ns if is_file(folder / REPORT) else ''}",
     )
 
 

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from tmpud.errors import NoPlanError, UtilityOverflowError
 from tmpud.presets import TMPUD, Preset
 from tmpud.roads.network import RoadNetwork
+from tmpud.showing import ShownAsHtml
 from tmpud.symbols import Cost, Safe, ServiceRequest, State, TaskPlan
 from tmpud.task.alternatives import best_plans
 from tmpud.task.corridor import Search, Tree, backward_tree, corridor, whole_map
@@ -22,7 +23,7 @@ from tmpud.task.explain import explain
 from tmpud.task.facts import facts
 from tmpud.task.proof import Prover
 from tmpud.task.ties import walk
-from tmpud.task.utility import Utility, split
+from tmpud.task.utility import Terms, Utility, split
 
 if TYPE_CHECKING:
     from tmpud.task.rules import Rules
@@ -31,7 +32,7 @@ REMEMBERED = 16  # requests
 
 
 @dataclass(frozen=True, slots=True)
-class PlanReport:
+class PlanReport(ShownAsHtml):
     """A plan, what it costs term by term, and how it was found."""
 
     plan: TaskPlan
@@ -45,6 +46,7 @@ class PlanReport:
     rounds: int = 0  # corridors that were tried
     ground_s: float = field(default=0.0, compare=False)  # [s] wall-clock
     solve_s: float = field(default=0.0, compare=False)  # [s] wall-clock
+    steps: tuple[Terms, ...] = ()  # of each transition
 
 
 @dataclass(slots=True)
@@ -154,5 +156,5 @@ class AspPlanner:
 
 
 def report_of(plan: TaskPlan, utility: Utility, *, optimal: bool = False) -> PlanReport:
-    terms, total = utility.total(plan)
-    return PlanReport(plan, *terms, total, optimal)
+    terms, total, steps = utility.total(plan)
+    return PlanReport(plan, *terms, total, optimal, steps=steps)

@@ -30,6 +30,14 @@ class Terms(NamedTuple):
     turns: float  # [m] added for left and right turns
 
 
+class Total(NamedTuple):
+    """What a plan costs."""
+
+    terms: Terms  # of the whole plan
+    centimetres: int  # the sum of what each transition costs, each rounded
+    steps: tuple[Terms, ...]  # of each transition
+
+
 class Utility:
     """The weights of one moment, for pruning, solving and reporting alike."""
 
@@ -51,11 +59,11 @@ class Utility:
             return FORBIDDEN
         return (centimetres(cost + safety + turns, transition) << 2 * FIELD) + STEP[transition.action]
 
-    def total(self, plan: TaskPlan) -> tuple[Terms, int]:
-        """Return the terms of a whole plan, and the sum of what each transition costs in whole centimetres."""
-        rows = [self.terms(transition) for transition in plan]
+    def total(self, plan: TaskPlan) -> Total:
+        """Return what a whole plan costs."""
+        rows = tuple([self.terms(transition) for transition in plan])
         terms = Terms(*(math.fsum(column) for column in zip(*rows, strict=True))) if rows else Terms(0.0, 0.0, 0.0)
-        return terms, sum(centimetres(sum(row), step) for row, step in zip(rows, plan, strict=True))
+        return Total(terms, sum(centimetres(sum(row), step) for row, step in zip(rows, plan, strict=True)), rows)
 
 
 class _Penalties(dict[float, float]):

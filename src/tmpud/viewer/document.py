@@ -1,4 +1,4 @@
-"""A run as one JSON document, all that the replay's page is told. Schema 2.
+"""A run as one JSON document, all that the replay's page is told. Schema 3.
 
 Times are whole milliseconds of simulated time, places whole centimetres, headings whole milliradians; lengths of
 plans are metres, coefficients of safe control sets SI units.
@@ -11,31 +11,27 @@ from collections.abc import Iterable
 from typing import Any
 
 from tmpud.dynamics import EGO
-from tmpud.errors import TmpudError
 from tmpud.events import Estimated, Executed, Finished, Judged, Planned
-from tmpud.presets import preset_named
-from tmpud.roads.loading import load_map
-from tmpud.roads.network import RoadNetwork
 from tmpud.story import plan_name
 from tmpud.symbols import TaskPlan, Transition
 from tmpud.viewer.changes import changes
 from tmpud.viewer.ground import ground, line
 from tmpud.viewer.intact import Intact
 from tmpud.viewer.memory import preset_of
-from tmpud.viewer.paths import mapping_of, plan_outline
+from tmpud.viewer.paths import Outlines
 from tmpud.viewer.reasons import Change
 from tmpud.viewer.sets import control_ranges, planes, predicted
 from tmpud.viewer.traffic import columns
 
-SCHEMA = 2
+SCHEMA = 3
 CAR = (5.0, 1.8)  # [m] length and width of SUMO's usual car: the log holds no sizes
 TOLD = ("map", "start", "goal", "via", "algorithm", "beta", "traffic", "seed", "preset")
 
 
 def replay_document(run: Intact) -> dict[str, Any]:
     """Return the document of a run, and add to its ``missing`` what cannot be shown."""
-    network = _network(run)
-    steps = _Steps(network, run)
+    outlines = Outlines(run)
+    network, steps = outlines.network, _Steps(outlines)
     plans = [event for event in run.events if isinstance(event, Planned)]
     document = {
         "schema": SCHEMA,
@@ -47,7 +43,7 @@ def replay_document(run: Intact) -> dict[str, Any]:
         "controls": _controls(run),
         "plans": [_planned(event, number, steps) for number, event in enumerate(plans)],
         "estimates": [_estimated(event, steps) for event in run.events if isinstance(event, Estimated)],
-        "executed": [_executed(event, steps) for event in run.events if isinstance(event, Executed)],
+        "executed": [_executed(event) for event in run.events if isinstance(event, Executed)],
         "judged": [_judged(event) for event in run.events if isinstance(event, Judged)],
         "changes": [_change(change, steps) for change in _changes(run)],
         "finished": next((_finished(event) for event in run.events if isinstance(event, Finished)), None),
@@ -56,50 +52,21 @@ def replay_document(run: Intact) -> dict[str, Any]:
 
 
 class _Steps:
-    """Numbers transitions in the order in which they are first met; each has a row [action, from, to, leg, path]."""
+    """Numbers transitions in the order in which they are first met; each has a row [action, from, path]."""
 
-    def __init__(self, network: RoadNetwork | None, run: Intact) -> None:
+    def __init__(self, outlines: Outlines) -> None:
         self.rows: list[list[Any]] = []
         self._numbers: dict[Transition, int] = {}
-        self._network = network
-        try:
-            self._mapping = mapping_of(network, run.header) if network else None
-        except (TmpudError, KeyError, TypeError, ValueError):
-            self._mapping = None
-            run.missing.append("the request in the header cannot be read, so no plan is drawn on the map")
+        self._outlines = outlines
 
     def __call__(self, step: Transition) -> int:
         if step not in self._numbers:
             self._numbers[step] = len(self.rows)
-            self.rows.append(
-                [step.action, step.state.segment, step.next_state.segment, step.state.leg, self._path(step)]
-            )
+            self.rows.append([step.action, step.state.segment, line(self._outlines((step,)))])
         return self._numbers[step]
 
     def all(self, plan: TaskPlan) -> list[int]:
         return [self(step) for step in plan]
-
-    def _path(self, step: Transition) -> list[int]:
-        network = self._network
-        if network is None or self._mapping is None:
-            return []
-        if not {step.state.segment, step.next_state.segment} <= network.segments.keys():
-            return []
-        return line(plan_outline(network, self._mapping, (step,)))
-
-
-def _network(run: Intact) -> RoadNetwork | None:
-    """Return the map a run was driven on, None where it is not there any more or is another one."""
-    mission, town = run.header.mission, run.header.map
-    try:
-        network = load_map(str(mission["map"]), preset_named(str(mission["preset"])).segment_length)
-    except (TmpudError, OSError, KeyError, ValueError) as error:
-        run.missing.append(f"the map cannot be read, so no roads are drawn: {error}")
-        return None
-    if network.digest != town.get("digest"):
-        run.missing.append(f"{mission['map']} is not the map it was when this was driven, so no roads are drawn")
-        return None
-    return network
 
 
 def _changes(run: Intact) -> list[Change]:
@@ -121,8 +88,7 @@ def _controls(run: Intact) -> dict[str, Any] | None:
 def _planned(event: Planned, number: int, steps: _Steps) -> dict[str, Any]:
     return {
         "name": plan_name(number),
-        "time": _ms(event.time),
-        "reason": event.reason,
+        "time": milliseconds(event.time),
         "steps": steps.all(event.plan),
         "cost": _metres(event.cost),
         "penalty": _metres(event.penalty),
@@ -131,36 +97,31 @@ def _planned(event: Planned, number: int, steps: _Steps) -> dict[str, Any]:
 
 def _estimated(event: Estimated, steps: _Steps) -> dict[str, Any]:
     return {
-        "time": _ms(event.time),
+        "time": milliseconds(event.time),
         "step": steps(event.step),
         "safe": event.safe,
         "worst": event.worst,
         "ids": event.ids,
         "o": [[round(value, 3) for value in row] for row in event.o],
-        "instants": [_ms(row[0]) for row in event.trajectory],
+        "instants": [milliseconds(row[0]) for row in event.trajectory],
         "path": line((x, y) for _, x, y, _ in event.trajectory),
         "planes": planes(event),
         "others": predicted(event),
     }
 
 
-def _executed(event: Executed, steps: _Steps) -> dict[str, Any]:
-    return {
-        "time": _ms(event.time),
-        "step": steps(event.step),
-        "outcome": event.outcome,
-        "distance": round(event.distance, 2),
-    }
+def _executed(event: Executed) -> dict[str, Any]:
+    return {"time": milliseconds(event.time), "outcome": event.outcome}
 
 
 def _judged(event: Judged) -> dict[str, Any]:
     words = {name: getattr(event, name) for name in ("kind", "vehicle", "rule", "blame", "detail")}
-    return {"time": _ms(event.time), **words}
+    return {"time": milliseconds(event.time), **words}
 
 
 def _finished(event: Finished) -> dict[str, Any]:
-    words = {name: getattr(event, name) for name in ("status", "message", "distance", "travel_time", "replans")}
-    return {"time": _ms(event.time), **words}
+    words = {name: getattr(event, name) for name in ("status", "message", "distance")}
+    return {"time": milliseconds(event.time), **words}
 
 
 def _change(change: Change, steps: _Steps) -> dict[str, Any]:
@@ -168,11 +129,11 @@ def _change(change: Change, steps: _Steps) -> dict[str, Any]:
         {
             "steps": steps.all(candidate.plan),
             "role": candidate.role,
-            "length": _metre(candidate.length),
+            "length": metre(candidate.length),
             "turns": candidate.turns,
-            "before": _metre(candidate.before),
-            "after": _metre(candidate.after),
-            "total": _metre(candidate.total),
+            "before": metre(candidate.before),
+            "after": metre(candidate.after),
+            "total": metre(candidate.total),
         }
         for candidate in change.candidates
     ]
@@ -188,15 +149,15 @@ def _shown(value: Any) -> Any:
     return value if isinstance(value, str | int) or (isinstance(value, float) and math.isfinite(value)) else None
 
 
-def _ms(seconds: float) -> int:
+def milliseconds(seconds: float) -> int:
     return round(seconds * 1000)
 
 
 def _metres(values: Iterable[Any]) -> list[float | None]:
-    return [_metre(value) for value in values]
+    return [metre(value) for value in values]
 
 
-def _metre(value: Any) -> float | None:
+def metre(value: Any) -> float | None:
     """Return a length rounded to millimetres [m], None where there is none or it is not finite."""
     number = math.inf if value is None else float(value)
     return round(number, 3) if math.isfinite(number) else None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import chain, groupby, pairwise
 from typing import Any
 
@@ -14,11 +14,13 @@ _LEFT_TO_RIGHT = (Action.TURNLEFT, Action.FORWARD, Action.TURNRIGHT)
 
 
 def ground(network: RoadNetwork) -> dict[str, Any]:
-    """Return lanes, junctions and what stands at the stop lines."""
+    """Return edges with their streets' names, lanes, junctions and what stands at the stop lines."""
+    numbers = {edge: number for number, edge in enumerate(network.edges)}
     return {
-        "lanes": [_lane(network, name) for name in network.lanes],
+        "edges": [[edge, network.street_names.get(edge, "")] for edge in network.edges],
+        "lanes": [_lane(network, name, numbers) for name in network.lanes],
         "junctions": [line(junction.shape) for junction in network.junctions.values() if len(junction.shape) > 2],
-        "stops": [stop for name in network.lanes for stop in _stops(network, name)],
+        "stops": [stop for name in network.lanes for stop in stops(network, name)],
     }
 
 
@@ -29,14 +31,14 @@ def line(points: Iterable[Point]) -> list[int]:
     return list(chain(whole[0], *steps)) if whole else []
 
 
-def _lane(network: RoadNetwork, name: str) -> list[Any]:
-    """Return width [cm], whether a lane of the same road lies to its left and to its right, and the centre line."""
+def _lane(network: RoadNetwork, name: str, edges: Mapping[str, int]) -> list[Any]:
+    """Return id, edge's number, width [cm], whether a lane of the road lies to its left and right, and the centre."""
     lane = network.lanes[name]
     beside = [int(network.neighbour(name, side) is not None) for side in (Action.MERGELEFT, Action.MERGERIGHT)]
-    return [round(lane.width * 100), *beside, line(lane.centre.points)]
+    return [name, edges[lane.edge], round(lane.width * 100), *beside, line(lane.centre.points)]
 
 
-def _stops(network: RoadNetwork, name: str) -> list[list[Any]]:
+def stops(network: RoadNetwork, name: str) -> list[list[Any]]:
     """Return the pieces of a lane's stop line, from the left: light, its letters' places, ends [cm].
 
     A piece stands for all connections of one action; lanes that no light controls have none.

@@ -31,11 +31,12 @@ class Intact:
 def read_intact(folder: Path) -> Intact:
     """Read a run folder; RunFileError where there is no run, or not even its first line can be read."""
     damaged: list[str] = []
-    lines = _events(folder / LOG, damaged)
+    cut: list[int] = []
+    lines = _events(folder / LOG, damaged, cut)
     header = next(lines, None)
     if not isinstance(header, Header):
-        why = f"; damaged: {damaged[0]}" if damaged else ""
-        raise RunFileError(f"{folder / LOG}:1: no header, so it cannot be told what was run{why}")
+        why = f"damaged: {damaged[0]}" if damaged else "it has only begun, or was cut off" if cut else "it is empty"
+        raise RunFileError(f"{folder / LOG}:1: no header, so it cannot be told what was run; {why}")
     run = Intact(header)
     for event in lines:
         if isinstance(event, Frame):
@@ -49,12 +50,16 @@ def read_intact(folder: Path) -> Intact:
     if not run.frames:
         run.missing.append("no frames were recorded, so no traffic can be shown")
     if not any(isinstance(event, Finished) for event in run.events):
-        run.missing.append("the run has no end: it is still going on or was broken off")
+        after = f" after line {cut[0]} of its log" if cut else ""
+        run.missing.append(f"the run has no end: it is still going on, or was cut off{after}")
     return run
 
 
-def _events(path: Path, damaged: list[str]) -> Iterator[Event]:
-    """Yield the events that are sound; note the others in ``damaged``."""
+def _events(path: Path, damaged: list[str], cut: list[int]) -> Iterator[Event]:
+    """Yield the events that are sound; note the others in ``damaged``, and in ``cut`` after which line the log ends.
+
+    A log that is still being written ends in the middle of its compressed stream, just as one that was cut off.
+    """
     number = 0
     try:
         with gzip.open(path, "rt", encoding="utf-8", errors="replace") as log:
@@ -66,7 +71,9 @@ def _events(path: Path, damaged: list[str]) -> Iterator[Event]:
                     yield event
     except (FileNotFoundError, NotADirectoryError) as error:
         raise RunFileError(f"{path}: no such run; a run folder holds {LOG}") from error
-    except (OSError, EOFError, zlib.error) as error:
+    except EOFError:
+        cut.append(number)
+    except (OSError, zlib.error) as error:
         damaged.append(f"everything after line {number} ({error})")
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from dataclasses import dataclass
 from pathlib import Path
 
 from matplotlib.axes import Axes
@@ -27,6 +28,30 @@ CAR, RISK = "#6b7280", "#c00000"
 MOST_PLANS = 5  # drawn
 ZOOM = 45.0  # [m] either side of the ego
 MOMENTS = 2  # shown close by
+
+
+@dataclass(frozen=True, slots=True)
+class Area:
+    """A rectangle of the map [m]."""
+
+    left: float
+    bottom: float
+    right: float
+    top: float
+
+    @classmethod
+    def around(cls, points: Iterable[Point], margin: float) -> Area:
+        xs, ys = zip(*points, strict=True)
+        return cls(min(xs) - margin, min(ys) - margin, max(xs) + margin, max(ys) + margin)
+
+    def touches(self, points: Iterable[Point]) -> bool:
+        """Whether the rectangle around the points lies partly within it."""
+        other = Area.around(points, 0.0)
+        apart = other.right < self.left or self.right < other.left or other.top < self.bottom or self.top < other.bottom
+        return not apart
+
+
+EVERYWHERE = Area(-math.inf, -math.inf, math.inf, math.inf)
 
 
 def draw_run(network: RoadNetwork, events: Iterable[Event], file: Path) -> None:
@@ -59,18 +84,20 @@ def draw_run(network: RoadNetwork, events: Iterable[Event], file: Path) -> None:
     figure.savefig(file, dpi=110)
 
 
-def draw_network(axes: Axes, network: RoadNetwork) -> None:
-    """Draw lanes, lane markings and junctions, to scale."""
+def draw_network(axes: Axes, network: RoadNetwork, within: Area = EVERYWHERE) -> None:
+    """Draw the lanes, lane markings and junctions of an area, to scale."""
     axes.set_aspect("equal")
     axes.axis("off")
     shapes = [junction.shape for junction in network.junctions.values() if len(junction.shape) > 2]
+    shapes = [shape for shape in shapes if within.touches(shape)]
     axes.add_collection(PolyCollection(shapes, facecolors=JUNCTION, edgecolors="none", zorder=0))
-    bands = [_band(lane.centre.points, lane.width) for lane in network.lanes.values()]
+    lanes = (lane for lane in network.lanes.values() if within.touches(lane.centre.points))
+    bands = [band(lane.centre.points, lane.width) for lane in lanes]
     axes.add_collection(PolyCollection(bands, facecolors=ROAD, edgecolors=MARKING, linewidths=0.4, zorder=1))
     axes.autoscale_view()
 
 
-def _band(points: Iterable[Point], width: float) -> list[Point]:
+def band(points: Iterable[Point], width: float) -> list[Point]:
     """Return the outline of a lane."""
     line = Polyline(points)
     left = [(line.pose_at(s, width / 2).x, line.pose_at(s, width / 2).y) for s in line.stations]
@@ -174,3 +201,9 @@ def _title(header: Header, log: list[Event]) -> str:
     result = f": {end.status}, {end.distance:.0f} m in {end.travel_time:.0f} s, {replans}" if end else ""
     done = sum(isinstance(event, Executed) for event in log)
     return f"{header.map['name']}, {mission['algorithm']}, seed {mission['seed']}{result}, {done} actions"
+
+
+def fitting(text: str, letters: int) -> str:
+    """Return text that fits into a line and has a glyph for each letter."""
+    shown = "".join(letter for letter in text if letter.isprintable()).encode("latin-1", "replace").decode("latin-1")
+    return shown if len(shown) <= letters else shown[: letters - 1] + "…"

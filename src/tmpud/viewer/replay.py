@@ -14,6 +14,7 @@ import re
 from pathlib import Path
 from typing import Any
 
+from tmpud.viewer.comparison import comparison_document
 from tmpud.viewer.document import replay_document
 from tmpud.viewer.intact import read_intact
 
@@ -23,10 +24,15 @@ _PAGE = Path(__file__).parent / "page"
 def write_replay(folder: Path, file: Path) -> list[str]:
     """Write the replay of a run folder; return what is missing in it. Raises RunFileError."""
     run = read_intact(folder)
-    page = render(replay_document(run))
-    file.parent.mkdir(parents=True, exist_ok=True)
-    file.write_text(page, encoding="utf-8")
+    _write(render(replay_document(run)), file)
     return run.missing
+
+
+def write_comparison(first: Path, second: Path, file: Path) -> list[str]:
+    """Write the replay of two runs in one page; return what is missing in it. Raises RunFileError, RequestError."""
+    runs = read_intact(first), read_intact(second)
+    _write(render(comparison_document(*runs)), file)
+    return [f"{folder}: {line}" for folder, run in zip((first, second), runs, strict=True) for line in run.missing]
 
 
 def render(document: dict[str, Any]) -> str:
@@ -37,6 +43,11 @@ def render(document: dict[str, Any]) -> str:
     parts = {"script": script, "style": style, "run": packed, "policy": _policy(script, style)}
     template = (_PAGE / "replay.html").read_text(encoding="utf-8")
     return re.sub(r"\{\{(\w+)\}\}", lambda place: parts[place[1]], template)
+
+
+def _write(page: str, file: Path) -> None:
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(page, encoding="utf-8")
 
 
 def _policy(script: str, style: str) -> str:

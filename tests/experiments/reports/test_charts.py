@@ -6,6 +6,7 @@ import pytest
 
 from tests.experiments.planted import planted, row
 from tmpud.experiments.reports.charts import Panel, batch_panels, draw, interval_panels
+from tmpud.experiments.reports.table import anchor
 from tmpud.experiments.statistics.cells import cells
 from tmpud.experiments.statistics.pairing import pair
 from tmpud.experiments.statistics.paper_numbers import TABLE1
@@ -83,3 +84,14 @@ def test_a_legend_that_is_too_wide_takes_another_row_from_the_panel() -> None:
         return max(ys) - min(ys)
 
     assert height(names) < height(names[:1])
+
+
+def test_each_point_is_a_link_that_says_what_it_stands_for() -> None:
+    panels = panels_of(planted(50, seed=2))
+    svg = draw(panels, TABLE1, "table1", "caption").svg
+    links = re.findall(r'<a xlink:href="#(cell-\w+)"><title>([^<]+)</title>', svg)
+    assert links == [
+        (anchor("normal", point.algorithm), point.words) for point in panels[0].points if point.distance[1] > 0
+    ]
+    assert len(links) == 5
+    assert "_blank" not in svg

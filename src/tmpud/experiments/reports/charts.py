@@ -6,6 +6,7 @@ import io
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from html import escape
 from typing import Any
 
 import matplotlib as mpl
@@ -18,6 +19,7 @@ from matplotlib.text import Annotation
 from matplotlib.transforms import Bbox
 
 from tmpud.experiments.reports.document import Picture
+from tmpud.experiments.reports.table import anchor
 from tmpud.experiments.statistics.cells import Cell
 from tmpud.experiments.statistics.pairing import Paired
 from tmpud.experiments.statistics.paper_numbers import ALGORITHMS, LABELS, Reference
@@ -65,6 +67,11 @@ class Point:
     distance: Span  # [m]
     unsafe: Span  # trials per 1,000
 
+    @property
+    def words(self) -> str:
+        metres, share = self.distance[1], self.unsafe[1]
+        return f"{label(self.algorithm)}: {metres:.1f} m on average, {share:.1f} unsafe trials per 1,000"
+
 
 @dataclass(frozen=True, slots=True)
 class Panel:
@@ -89,21 +96,30 @@ def batch_panels(pairs: Iterable[Paired]) -> tuple[Panel, ...]:
 
 
 def draw(panels: Sequence[Panel], reference: Reference, name: str, caption: str) -> Picture:
-    """Draw panels side by side, as the paper does."""
+    """Draw panels side by side, as the paper does; in the SVG, a point leads to its row in the table of cells."""
     algorithms = list(dict.fromkeys(point.algorithm for panel in panels for point in panel.points))
-    styles = _styles(algorithms)
+    looks = styles(algorithms)
     with mpl.rc_context(LOOK):
         figure = Figure(figsize=(max(3.4 * len(panels), 7.5), 4.2), layout="constrained")
         FigureCanvasAgg(figure)
         drawn = figure.subplots(1, len(panels), squeeze=False)[0]
-        labels = [_draw_panel(axes, panel, reference, styles) for axes, panel in zip(drawn, panels, strict=True)]
+        labels = [_draw_panel(axes, panel, reference, looks) for axes, panel in zip(drawn, panels, strict=True)]
         drawn[0].set_ylabel("unsafe trials per 1,000")
         known = any(panel.title in reference for panel in panels)
-        _legend(figure, {name: styles[name] for name in algorithms}, known)
+        _legend(figure, {name: looks[name] for name in algorithms}, known)
         figure.draw_without_rendering()
         for axes, panel, those in zip(drawn, panels, labels, strict=True):
             _spread(axes, panel, reference, those)
-        return Picture(name, caption, *saved(figure))
+        svg, png = saved(figure)
+        return Picture(name, caption, _named(svg, panels), png)
+
+
+def _named(svg: str, panels: Iterable[Panel]) -> str:
+    """Return a picture whose links say what they stand for, and stay on the page."""
+    for title, point in ((panel.title, point) for panel in panels for point in panel.points):
+        link = f'<a xlink:href="#{anchor(title, point.algorithm)}"'
+        svg = svg.replace(f'{link} target="_blank">', f"{link}><title>{escape(point.words)}</title>")
+    return svg
 
 
 def _batch_points(paired: Paired) -> Iterable[Point]:
@@ -123,7 +139,7 @@ def _over(means: Sequence[float]) -> Span:
     return value - spread, value, value + spread
 
 
-def _styles(names: Sequence[str]) -> dict[str, Style]:
+def styles(names: Sequence[str]) -> dict[str, Style]:
     found = dict.fromkeys([*ALGORITHMS, *names])  # the paper's always look the same
     return {name: Style(COLOURS[i % len(COLOURS)], MARKERS[i % len(MARKERS)]) for i, name in enumerate(found)}
 
@@ -138,25 +154,25 @@ def _draw_panel(axes: Axes, panel: Panel, reference: Reference, styles: dict[str
     for algorithm, cell in reference.get(panel.title, {}).items():
         axes.add_line(styles[algorithm].mark(PAPER, cell.distance, cell.per_1000)).set_zorder(2)
     shown = [point for point in panel.points if math.isfinite(point.distance[1]) and math.isfinite(point.unsafe[1])]
-    labels = [_draw_point(axes, point, styles[point.algorithm]) for point in shown]
+    labels = [_draw_point(axes, panel.title, point, styles[point.algorithm]) for point in shown]
     axes.autoscale_view()
     low, high = axes.get_ylim()
     axes.set_ylim(max(low, -0.06 * high))  # room for a label under 0, but no more: there are no shares below
     return labels
 
 
-def _draw_point(axes: Axes, point: Point, style: Style) -> Annotation:
+def _draw_point(axes: Axes, condition: str, point: Point, style: Style) -> Annotation:
     x, y = point.distance[1], point.unsafe[1]
     bars = [
         [[value - low], [high - value]] if math.isfinite(high - low) else None
         for low, value, high in (point.distance, point.unsafe)
     ]
     axes.errorbar(x, y, xerr=bars[0], yerr=bars[1], fmt="none", ecolor=style.colour, elinewidth=1, capsize=2, zorder=3)
-    axes.add_line(style.mark(style.colour, x, y))
-    text = _label(point.algorithm)
-    label = axes.annotate(text, (x, y), xytext=PLACES[0], textcoords="offset points", fontsize=8, color=style.colour)
-    label.set_parse_math(False)
-    return label
+    axes.add_line(style.mark(style.colour, x, y)).set_url(f"#{anchor(condition, point.algorithm)}")
+    text = label(point.algorithm)
+    note = axes.annotate(text, (x, y), xytext=PLACES[0], textcoords="offset points", fontsize=8, color=style.colour)
+    note.set_parse_math(False)
+    return note
 
 
 def _spread(axes: Axes, panel: Panel, reference: Reference, labels: Sequence[Annotation]) -> None:
@@ -187,7 +203,7 @@ def _obstacles(axes: Axes, panel: Panel, reference: Reference) -> Iterable[Bbox]
 
 
 def _legend(figure: Figure, styles: dict[str, Style], paper: bool) -> None:
-    marks = {_label(name): style.mark(style.colour) for name, style in styles.items()}
+    marks = {label(name): style.mark(style.colour) for name, style in styles.items()}
     if paper:
         marks["grey: the paper, same shapes"] = Style(PAPER, "o").mark(PAPER)
     legend = figure.legend(list(marks.values()), list(marks), loc="outside lower center", ncols=len(marks))
@@ -200,7 +216,8 @@ def _legend(figure: Figure, styles: dict[str, Style], paper: bool) -> None:
         text.set_parse_math(False)
 
 
-def _label(algorithm: str) -> str:
+def label(algorithm: str) -> str:
+    """Return what an algorithm is called in a picture."""
     return LABELS.get(algorithm) or _drawable(algorithm)
 
 

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from tmpud.experiments.running.tasks import TOOL_FAULTS
+from tmpud.experiments.running.tasks import TOOL_FAULTS, digest
 from tmpud.experiments.statistics.cells import Cell
 from tmpud.experiments.statistics.claims import PARTS, Finding, worst
 from tmpud.experiments.statistics.intervals import Estimate
@@ -23,6 +23,12 @@ class Table:
     columns: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
     notes: tuple[str, ...] = ()
+    anchors: tuple[str, ...] = ()  # of the rows, where pictures lead to them
+
+
+def anchor(condition: str, algorithm: str) -> str:
+    """Return what the row of a cell is called on a page."""
+    return f"cell-{digest([condition, algorithm])}"
 
 
 def comparison(title: str, cells: Sequence[Cell], reference: Reference) -> Table:
@@ -44,7 +50,8 @@ def comparison(title: str, cells: Sequence[Cell], reference: Reference) -> Table
                 _arrived(cell),
             )
         )
-    return Table(title, columns, tuple(rows), tuple(_notes(cells)))
+    anchors = tuple(anchor(cell.condition, cell.algorithm) for cell in cells)
+    return Table(title, columns, tuple(rows), tuple(_notes(cells)), anchors)
 
 
 def findings_table(findings: Sequence[Finding]) -> Table:

@@ -22,8 +22,9 @@ SCHEMA = 1
 KEYS = {"experiment", "options", "tasks", "versions", "code", "command", "begun"}
 PACKAGES = ("tmpud", "clingo", "libsumo", "numpy")
 SHOWS_ONLY = (  # files that read results and cannot change them
-    "cli/", "story.py", "viewer/", "experiments/kinds", "experiments/reports/", "experiments/running/progress",
-    "experiments/statistics/cells", "experiments/statistics/claims", "experiments/statistics/pairing", "server/",
+    "cli/", "story.py", "viewer/", "server/", "experiments/again", "experiments/kinds", "experiments/reports/",
+    "experiments/running/progress", "experiments/statistics/cells", "experiments/statistics/claims",
+    "experiments/statistics/pairing",
 )  # fmt: skip
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterable
 from typing import NamedTuple
 
 
@@ -22,3 +24,9 @@ PAPER_MISSIONS = {
         "Merge left in the first block or, at no extra distance, the second; or go round by the Avenue or East Street.",
     )
 }
+
+
+def street_names(edges: Iterable[str]) -> dict[str, str]:
+    """Return the names of a shipped town's streets by their edges: "park1e" is a part of Park Street."""
+    words = {edge: re.sub(r"\d.*", "", edge) for edge in edges}
+    return {edge: "The Avenue" if word == "avenue" else f"{word.capitalize()} Street" for edge, word in words.items()}

@@ -1,8 +1,8 @@
 """Wakes the Traffic Manager where it sleeps through a tick.
 
-In client 0.9.16 a tick tells the manager's thread to begin its step without holding the lock that the thread waits with. If
-the notice comes in the moment before it waits, it is lost, and both wait for each other for ever. Switching the manager
-out of synchronous mode repeats the notice; it is in that mode again before the thread asks.
+In client 0.9.16 a tick tells the manager's thread to begin its step without holding the lock that the thread waits
+with. If the notice comes in the moment before it waits, it is lost, and both wait for each other for ever. Switching
+the manager out of synchronous mode repeats the notice; it is in that mode again before the thread asks.
 """
 
 from __future__ import annotations
