@@ -9,7 +9,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from benchmarks import abstract, frames, full_step, growth, highway, load, plan, safety, start, trials, view
+from benchmarks import abstract, carla, frames, full_step, growth, highway, load, plan, safety, start, trials, view
 from benchmarks.harness import DisagreementError, SkipError
 from benchmarks.report import as_json, headline, table, write
 
@@ -22,6 +22,7 @@ BENCHMARKS: dict[str, ModuleType] = {
     "highway": highway,
     "trials": trials,
     "abstract": abstract,
+    "carla": carla,
     "view": view,
     "frames": frames,
 }

@@ -34,3 +34,22 @@ def blocks_net(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def spur_net(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return the net of a ring of roads, from which one leads into a dead end."""
     return nets.spur(tmp_path_factory.mktemp("nets"))
+
+
+@pytest.fixture(scope="session")
+def blocks_xodr(blocks_net: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the two blocks as OpenDRIVE; skips where CARLA's client is not installed."""
+    pytest.importorskip("carla")
+    from tests.carla_loopback.towns import as_opendrive
+
+    return as_opendrive(blocks_net, tmp_path_factory.mktemp("xodr"))
+
+
+@pytest.fixture(scope="session")
+def millbrook_xodr(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the shipped town as OpenDRIVE; skips where CARLA's client is not installed."""
+    pytest.importorskip("carla")
+    from tests.carla_loopback.towns import as_opendrive
+    from tmpud.roads.loading import map_file
+
+    return as_opendrive(map_file("millbrook"), tmp_path_factory.mktemp("xodr"))

@@ -16,7 +16,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import fields
 from pathlib import Path
 
-from tools.verification import agreement, faults, missions, paper, runs
+from tools.verification import agreement, carla, faults, missions, paper, runs
 from tools.verification.figures import ROOT, Figure, keep, provenance, section
 from tools.verification.options import Options
 
@@ -33,6 +33,9 @@ SECTIONS: dict[str, Callable[[Options], list[Figure]]] = {
     "kills": faults.kills,
     "traffic": runs.traffic,
     "repeat": runs.repeat,
+    "carla-repeat": carla.repeat,
+    "carla-left": carla.left,
+    "carla-missions": carla.missions,
     "figure4": paper.figure4,
     "calibration": paper.calibration,
     "same-results": paper.same_results,
@@ -53,6 +56,9 @@ USED = {
     "kills": ("kills",),
     "traffic": ("seconds",),
     "repeat": ("repeats", "traffic"),
+    "carla-repeat": ("repeats", "traffic"),
+    "carla-left": ("kills",),
+    "carla-missions": ("missions",),
     "figure4": ("figure_trials",),
     "calibration": (),
     "same-results": ("same_trials",),

@@ -53,6 +53,10 @@ class SimulatorError(TmpudError):
     exit_code = 3
 
 
+class SimulatorHangError(SimulatorError):
+    """The simulator does not answer."""
+
+
 class RunFileError(TmpudError):
     """A run folder or event log that is damaged or of another schema."""
 

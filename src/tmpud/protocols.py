@@ -79,6 +79,11 @@ class SafetyEstimator(Protocol):
 class Simulator(Protocol):
     """A town with traffic, in which the ego is moved by commands."""
 
+    @property
+    def versions(self) -> Mapping[str, str]:
+        """Of which versions the programs are that make it, by their names."""
+        ...
+
     def reset(self, lane: str, station: float) -> Scene:
         """Put the ego at a station of a lane, in the running town."""
         ...

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import importlib.metadata
 import platform
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Callable, Generator, Iterator, Mapping
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmpud.errors import InvalidStateError, NoPlanError, SimulatorError
+from tmpud.errors import InvalidStateError, NoPlanError, SimulatorError, SimulatorHangError
 from tmpud.events import Event, Finished, Header
 from tmpud.execution.baselines import communication
 from tmpud.execution.deliberation import ALTERNATIVES, Deliberation
@@ -30,6 +30,9 @@ from tmpud.scene import Outcome
 from tmpud.symbols import ServiceRequest
 from tmpud.task.asp_planner import AspPlanner
 from tmpud.task.domain import Domain
+
+if TYPE_CHECKING:
+    from tmpud.simulators.carla.session import Address
 
 STATUS = {
     Outcome.DONE: "SUCCESS",
@@ -71,6 +74,17 @@ def sumo(network: RoadNetwork, mission: Mission) -> Simulator:
     return SumoSimulator(network, traffic=mission.traffic, seed=mission.seed, request=mission.request(network))
 
 
+def carla(server: Address) -> SimulatorFactory:
+    """Return what starts a drive on a CARLA server, on its map of the network's name."""
+
+    def start(network: RoadNetwork, mission: Mission) -> Simulator:
+        from tmpud.simulators.carla.simulator import CarlaSimulator
+
+        return CarlaSimulator(network, traffic=mission.traffic, seed=mission.seed, server=server)
+
+    return start
+
+
 def drive(
     mission: Mission,
     *,
@@ -106,7 +120,7 @@ def drive(
         domain = Domain(network, request)
         start = domain.start_state()
         here.enter(*mapping(start))
-        yield _header(mission, preset, network, request)
+        yield _header(mission, preset, network, request, town.versions)
         mind = Deliberation(request, domain, planner, motion, here, alternatives=alternatives)
         status, message = yield from _ended(run_tmpud(start, mind, communicate), here)
     finally:
@@ -123,16 +137,20 @@ def _ended(run: Generator[Event, None, Outcome], world: SimulatedWorld) -> Gener
         return "NO_PLAN", str(error)
     except InvalidStateError as error:
         return "INVALID_STATE", str(error)
+    except SimulatorHangError as error:
+        return "SIM_HANG", str(error)
     except SimulatorError as error:
         return "SIM_CRASH", str(error)
     return STATUS[outcome], world.refused or ""
 
 
-def _header(mission: Mission, preset: Preset, network: RoadNetwork, request: ServiceRequest) -> Header:
-    versions = {name: importlib.metadata.version(name) for name in ("tmpud", "clingo", "libsumo", "numpy")}
+def _header(
+    mission: Mission, preset: Preset, network: RoadNetwork, request: ServiceRequest, simulator: Mapping[str, str]
+) -> Header:
+    versions = {name: importlib.metadata.version(name) for name in ("tmpud", "clingo", "numpy")}
     return Header(
         time=0.0,
-        versions={**versions, "python": platform.python_version()},
+        versions={**versions, **simulator, "python": platform.python_version()},
         map={"name": network.name, "digest": network.digest, **asdict(network.frame)},
         mission={**asdict(mission), "request": _words(request), "settings": asdict(preset)},
     )

@@ -1,5 +1,5 @@
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -40,6 +40,7 @@ class FakeSimulator:
     change: Change = lambda scene: scene
     commands: list[Control] = field(default_factory=list)
     announced: list[Sequence[str]] = field(default_factory=list)
+    versions: Mapping[str, str] = field(default_factory=dict)
 
     def reset(self, lane: str, station: float) -> Scene:
         ego = VehicleState("ego", ROADS.lanes[lane].centre.pose_at(station), lane, speed=5.0)

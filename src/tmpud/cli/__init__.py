@@ -8,7 +8,7 @@ from typing import Annotated, NoReturn
 import typer
 
 import tmpud
-from tmpud.cli import checking, driving, experiments, exporting, planning, viewing
+from tmpud.cli import carla, checking, driving, experiments, exporting, planning, viewing
 from tmpud.errors import TmpudError
 
 INTERRUPTED = 130
@@ -29,7 +29,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
-for part in (driving, planning, experiments, viewing, exporting, checking):
+for part in (driving, planning, experiments, viewing, exporting, checking, carla):
     app.add_typer(part.app)
 
 

@@ -4,26 +4,20 @@ from __future__ import annotations
 
 import json
 from dataclasses import asdict
-from enum import StrEnum
 from typing import Annotated
 
 import typer
 
-from tmpud.cli.options import Json
+from tmpud.cli.options import Host, Json, Port, Sim
 
 app = typer.Typer()
-
-
-class Sim(StrEnum):
-    SUMO = "sumo"
-    CARLA = "carla"
 
 
 @app.command()
 def doctor(
     sim: Annotated[Sim, typer.Option(help="Look for what this simulator needs, too.")] = Sim.SUMO,
-    host: Annotated[str, typer.Option(help="Where CARLA's server runs.")] = "127.0.0.1",
-    port: Annotated[int, typer.Option(min=1, max=65535, help="Its port.")] = 2000,
+    host: Host = "127.0.0.1",
+    port: Port = 2000,
     as_json: Json = False,
 ) -> None:
     """Look whether all that a drive needs is there, and say what to do where it is not. Exit code 3 where not."""

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from tmpud.cli.filming import Cutting, Films, write_films
-from tmpud.cli.options import TOWN, Algorithm, Beta, Journey, Json, Out, Seed, Traffic, grouped
+from tmpud.cli.options import TOWN, Algorithm, Beta, Journey, Json, Out, Seed, Simulated, Traffic, grouped
 
 if TYPE_CHECKING:
-    from tmpud.runner import Mission
+    from tmpud.runner import Mission, SimulatorFactory
 
 app = typer.Typer()
 
@@ -23,17 +23,18 @@ DEMO_SEED, DEMO_TRAFFIC = 16, 200
 def demo(seed: Seed = DEMO_SEED, out: Out = None) -> None:
     """Drive the paper's mission in dense traffic. Tells the story as it goes and writes a run folder."""
     from tmpud.roads.towns import PAPER_MISSIONS
-    from tmpud.runner import Mission
+    from tmpud.runner import Mission, sumo
 
     paper = PAPER_MISSIONS[TOWN]
     mission = Mission(map=TOWN, start=paper.start, goal=paper.goal, seed=seed, traffic=DEMO_TRAFFIC)
-    _drive(mission, out or Path("runs/demo"), as_json=False)
+    _drive(mission, out or Path("runs/demo"), sumo, as_json=False)
 
 
 @app.command()
 @grouped
 def drive(
     journey: Journey,
+    where: Simulated,
     algorithm: Algorithm = "tmpud",
     beta: Beta = 0.3,
     traffic: Traffic = 120,
@@ -43,7 +44,8 @@ def drive(
     films: Films,
     as_json: Json = False,
 ) -> None:
-    """Drive one mission in SUMO's traffic. The run is judged and written into a folder."""
+    """Drive one mission in a simulator's traffic. The run is judged and written into a folder."""
+    from tmpud.cli.simulating import map_of, simulator
     from tmpud.runner import Mission
 
     if films and not frames:
@@ -51,7 +53,7 @@ def drive(
     films.check()
 
     mission = Mission(
-        map=journey.map,
+        map=map_of(where, journey.map),
         start=journey.start,
         goal=journey.goal,
         via=tuple(journey.via or ()),
@@ -61,7 +63,8 @@ def drive(
         seed=journey.seed,
         preset=journey.preset,
     )
-    _drive(mission, out or Path("runs") / _name(mission), as_json=as_json, frames=frames, films=films)
+    folder = out or Path("runs") / _name(mission)
+    _drive(mission, folder, simulator(where), as_json=as_json, frames=frames, films=films)
 
 
 def _name(mission: Mission) -> str:
@@ -72,7 +75,15 @@ def _name(mission: Mission) -> str:
     return run_name(f"{town}-{mission.preset}-{mission.algorithm}-{mission.seed}")
 
 
-def _drive(mission: Mission, folder: Path, *, as_json: bool, frames: bool = True, films: Films | None = None) -> None:
+def _drive(
+    mission: Mission,
+    folder: Path,
+    simulator: SimulatorFactory,
+    *,
+    as_json: bool,
+    frames: bool = True,
+    films: Films | None = None,
+) -> None:
     from tmpud.events import Event
     from tmpud.execution.timing import Stopwatch
     from tmpud.presets import preset_named
@@ -85,7 +96,7 @@ def _drive(mission: Mission, folder: Path, *, as_json: bool, frames: bool = True
 
     watch, story = Stopwatch(), Story()
     events: list[Event] = []
-    for event in record(run(mission, stopwatch=watch, frames=frames), folder):
+    for event in record(run(mission, simulator=simulator, stopwatch=watch, frames=frames), folder):
         events.append(event)
         if not as_json:
             for line in story.tell(event):

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from textwrap import indent
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tmpud.cli.options import TOWN, Jobs, Json, Map, Running, Setting, grouped
+from tmpud.cli.options import TOWN, Jobs, Json, Map, Running, Setting, Sim, Simulated, grouped
 from tmpud.cli.running import run_tasks
 
 if TYPE_CHECKING:
@@ -39,14 +39,21 @@ def table1(
     trials: Annotated[int, typer.Option(min=1, max=100_000, help="Trials per algorithm and density.")] = 200,
     setting: Setting,
     first_seed: Annotated[int, typer.Option(min=0, help="Seed of the first trial.")] = 1000,
+    where: Simulated,
     running: Running,
 ) -> None:
     """Repeat Table I in full simulation. Five algorithms, normal and heavy traffic, paired seeds."""
+    from tmpud.cli.simulating import address, map_of
     from tmpud.experiments.trials.grid import cells
     from tmpud.experiments.trials.table1 import Table1
 
-    grid = Table1(**asdict(setting), trials=trials, first_seed=first_seed).grid()
-    _experiment("table1", grid.to_json(), [cell.task for cell in cells(grid)], running)
+    asked = Table1(**asdict(setting), trials=trials, first_seed=first_seed)
+    name = "table1"
+    if where.sim is Sim.CARLA:  # one server drives one trial at a time
+        name, running = "table1-carla", replace(running, jobs=1)
+        asked = replace(asked, map=map_of(where, setting.map), server=str(address(where)))
+    grid = asked.grid()
+    _experiment(name, grid.to_json(), [cell.task for cell in cells(grid)], running)
 
 
 @paper_app.command()

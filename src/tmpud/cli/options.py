@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import MISSING, dataclass, fields, is_dataclass
+from enum import StrEnum
 from functools import wraps
 from inspect import Parameter, Signature, signature
 from pathlib import Path
@@ -53,6 +54,26 @@ Folder = Annotated[
     Path | None,
     typer.Option("--out", help="The folder to write, or to go on in; default: results/<name>-<digest of the options>."),
 ]
+
+
+class Sim(StrEnum):
+    SUMO = "sumo"
+    CARLA = "carla"
+
+
+Host = Annotated[str, typer.Option(help="Where CARLA's server runs.")]
+Port = Annotated[int, typer.Option(min=1, max=65535, help="Its port.")]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Simulated:
+    """In which simulator to drive, and where that runs."""
+
+    sim: Annotated[Sim, typer.Option(help="Drive in SUMO, or on a CARLA server; --map is then one of its maps.")] = (
+        Sim.SUMO
+    )
+    host: Host = "127.0.0.1"
+    port: Port = 2000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -20,6 +20,7 @@ from tmpud.experiments.trials.figure4 import Figure4
 from tmpud.experiments.trials.figure4 import deviations as figure4_deviations
 from tmpud.experiments.trials.grid import Cell, Grid, cells
 from tmpud.experiments.trials.grid import rows as grid_rows
+from tmpud.experiments.trials.table1 import CARLA_DEVIATIONS
 from tmpud.experiments.trials.table1 import DEVIATIONS as TABLE1_DEVIATIONS
 
 if TYPE_CHECKING:
@@ -60,6 +61,12 @@ KINDS = {
         cells=_cells,
         reference=TABLE1,
         deviations=lambda _: TABLE1_DEVIATIONS,
+    ),
+    "table1-carla": Kind(
+        title="Full simulation on a CARLA server: Table I",
+        rows=_of_grid,
+        reference=TABLE1,
+        deviations=lambda _: CARLA_DEVIATIONS,
     ),
     "figure4": Kind(
         title="Abstract simulation: the paper's figure",

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import contextlib
+import importlib.metadata
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from types import ModuleType, TracebackType
 from typing import Self
@@ -51,6 +52,10 @@ class Simulation:
 
     _sumo: ModuleType
     _steps = 0
+
+    @property
+    def versions(self) -> Mapping[str, str]:
+        return {"libsumo": importlib.metadata.version("libsumo")}
 
     def close(self) -> None:
         """End the simulation; a second call does nothing."""

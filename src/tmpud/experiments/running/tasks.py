@@ -70,6 +70,7 @@ class NotingWork(Work, Protocol):
 
 WORK: dict[str, str] = {  # name -> "module:class", imported where it is run
     "full": "tmpud.experiments.trials.full:FullTrials",
+    "carla": "tmpud.experiments.trials.carla:CarlaTrials",
     "abstract": "tmpud.experiments.trials.abstract:AbstractTrials",
     "learn": "tmpud.experiments.worlds.learning:LearningRuns",
     "merge scenes": "tmpud.experiments.calibration.scenes:MergeScenes",

@@ -42,16 +42,18 @@ class Grid:
     algorithms: tuple[str, ...] = ALGORITHMS
     presets: tuple[str, ...] = ("tmpud",)
     seeds: tuple[int, ...] = tuple(range(200))
+    server: str = ""  # host:port of a CARLA server, "" where SUMO drives
 
     def to_json(self) -> dict[str, Any]:
-        return asdict(self)
+        row = asdict(self)
+        return row if self.server else {name: value for name, value in row.items() if name != "server"}
 
     @classmethod
     def from_json(cls, row: Mapping[str, Any]) -> Grid:
         """Return the grid that ``to_json`` described."""
         routes = (m if isinstance(m, str) else Route(m[0], m[1], tuple(m[2])) for m in row["missions"])
         lists = {name: tuple(row[name]) for name in ("maps", "algorithms", "presets", "seeds")}
-        return cls(missions=tuple(routes), traffic=dict(row["traffic"]), **lists)
+        return cls(missions=tuple(routes), traffic=dict(row["traffic"]), server=row.get("server", ""), **lists)
 
 
 class Cell(NamedTuple):
@@ -73,13 +75,14 @@ def cells(grid: Grid) -> list[Cell]:
             grid.traffic.items(), enumerate(product(routes, grid.seeds))
         ):
             shared = {"map": map_, "traffic": vehicles, "seed": seed, **route._asdict()}
+            shared |= {"server": grid.server} if grid.server else {}
             for preset, algorithm in product(grid.presets, grid.algorithms):
                 condition = _condition(grid, map_, name, preset)
                 key = f"{condition or name}/{trial:05d}/{algorithm}"
                 arguments = {"preset": preset, **_algorithm(algorithm)}
-                found.append(
-                    Cell(condition, algorithm, trial, Task(key=key, work="full", shared=shared, arguments=arguments))
-                )
+                work = "carla" if grid.server else "full"
+                task = Task(key=key, work=work, shared=shared, arguments=arguments)
+                found.append(Cell(condition, algorithm, trial, task))
     return found
 
 

@@ -21,6 +21,7 @@ class Table1:
     trials: int = TRIALS
     preset: str = "tmpud"
     first_seed: int = FIRST_SEED
+    server: str = ""  # host:port of a CARLA server, "" where SUMO drives
 
     def grid(self) -> Grid:
         """Return the trials; RequestError where they cannot be spread evenly over the missions."""
@@ -34,6 +35,7 @@ class Table1:
             traffic=TRAFFIC,
             presets=(self.preset,),
             seeds=tuple(range(self.first_seed, self.first_seed + self.trials // count)),
+            server=self.server,
         )
 
 
@@ -43,4 +45,11 @@ DEVIATIONS = (
     "The paper gives no gamma, D, alpha, control ranges or horizon: the preset does; grounds in docs/experiments.md.",
     "All five algorithms of a trial meet the same traffic, up to the moment at which they act differently.",
     "A distance counts where all compared algorithms arrived; what the paper does after a collision it does not say.",
+)
+
+CARLA_DEVIATIONS = (
+    "The server's Traffic Manager drives the traffic at the preset's 20 km/h; each trial loads the map anew.",
+    "The same seed gives algorithms like traffic, not the very same one: CARLA promises no more.",
+    *DEVIATIONS[2:3],
+    *DEVIATIONS[4:],
 )
