@@ -17,7 +17,7 @@ check: $(VENV)/.developing
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-pytest: $(VENV)/.developing $(VENV)/.browser
+pytest: $(VENV)/.developing $(VENV)/.browser $(VENV)/.client
 	$(BIN)/pytest -n 2
 
 verify: $(VENV)/.developing
@@ -48,6 +48,11 @@ $(VENV)/.benching: $(BIN)/python pyproject.toml constraints.txt
 # The replay's page is tried in Debian's Chromium; where it cannot be had those tests are skipped.
 $(VENV)/.browser: | $(BIN)/python
 	command -v chromium >/dev/null || (apt-get update && apt-get install -y chromium) || echo "no chromium: its tests are skipped"
+	touch $@
+
+# The real CARLA client drives against a loopback server; where it cannot be had those tests are skipped.
+$(VENV)/.client: $(VENV)/.developing
+	$(PIP) install --constraint constraints.txt --editable '.[carla]' || echo "no CARLA client: its tests are skipped"
 	touch $@
 
 # Only this needs Node: the page's sources in frontend/, built into the package.
