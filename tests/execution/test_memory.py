@@ -2,7 +2,9 @@
 
 import pickle
 from functools import partial
+from importlib.metadata import version
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -22,8 +24,8 @@ PAPER = PAPER_MISSIONS["millbrook"]
 
 
 def nobody(*_: Any) -> Simulator:
-    """Stand where a simulator would: whatever it is asked for, it does not have."""
-    return object()  # type: ignore[return-value]
+    """Stand where a simulator would: whatever it is asked for but its versions, it does not have."""
+    return SimpleNamespace(versions={"libsumo": version("libsumo")})
 
 
 def recorded(net: Path, algorithm: str, cars: tuple[Neighbour, ...]) -> tuple[list[Event], Memory]:

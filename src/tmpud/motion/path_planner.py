@@ -6,11 +6,9 @@ import math
 
 from tmpud.motion.mapping import RoadPoint, StateMapping
 from tmpud.motion.path import MERGE_LENGTH, Change, Cross, Move, find_path
-from tmpud.roads.moves import SHORTEST_MERGE
+from tmpud.roads.moves import END_ROOM, SHORTEST_MERGE
 from tmpud.roads.network import RoadNetwork
 from tmpud.symbols import Transition
-
-END_ROOM = 3.0  # [m] kept free at a lane's end
 
 
 class PathPlanner:

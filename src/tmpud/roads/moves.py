@@ -11,6 +11,7 @@ from tmpud.symbols import Action
 
 MERGES = (Action.MERGELEFT, Action.MERGERIGHT)
 SHORTEST_MERGE = 20.0  # [m] of road that a car at 20 km/h needs to change lanes gently
+END_ROOM = 3.0  # [m] kept free at the end of a lane that is not cut
 
 
 class Move(NamedTuple):
@@ -65,7 +66,7 @@ def _has_room(network: RoadNetwork, origin: Segment, target: Segment, action: Ac
     part = network.open_from(origin.lane, action, latest, SHORTEST_MERGE)
     if part is None or part == (latest, math.inf):
         return part is not None
-    there = target.end if network.uncut else target.middle
+    there = target.end - END_ROOM if network.uncut else target.middle
     there *= network.lanes[origin.lane].length / network.lanes[target.lane].length
     return min(part.end, there) - part.start >= SHORTEST_MERGE
 

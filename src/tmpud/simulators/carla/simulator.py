@@ -23,7 +23,7 @@ from tmpud.simulators.sumo_reader import DT, EGO_ID
 from tmpud.simulators.traffic import TrafficRules
 
 WARM_UP = 30.0  # [s] simulated
-CHUNK = 20  # steps between two signs of life while the traffic warms up
+CHUNK = 20  # steps between two signs of life while the traffic warms up; all take less than three slow ones
 
 
 class CarlaSimulator:
@@ -54,7 +54,7 @@ class CarlaSimulator:
         try:
             self._take(self._session.ask("load", LOADED, name=network.name, seed=seed, traffic=traffic, rules=words))
             for _ in range(round(warm_up / DT / CHUNK)):
-                self._take(self._session.ask("warm_up", self._session.patience * CHUNK, steps=CHUNK))
+                self._take(self._session.ask("warm_up", 3 * self._session.patience, steps=CHUNK))
         except SimulatorError:
             self.close()
             raise
