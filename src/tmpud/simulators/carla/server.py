@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import importlib.metadata
-import time
 from collections.abc import Iterable
-from typing import Any, NamedTuple
+from typing import Any
 
 import carla
 
@@ -19,13 +18,6 @@ LOADING = 60.0  # [s] in which a server loads a map
 LIFT = 0.5  # [m] a car is put so much above the road, and falls onto it
 ROLE = "tmpud"  # role names of all our actors begin so
 KEPT = ("no_rendering_mode", "max_substep_delta_time", "max_substeps", "substepping", "deterministic_ragdolls")
-
-
-class Ticking(NamedTuple):
-    """A tick under way."""
-
-    since: float  # [s]
-    before: int  # the frame before it
 
 
 class Server:
@@ -44,8 +36,6 @@ class Server:
         client.set_timeout(patience)
         self.found = self.settings()  # what to leave behind
         self.ours: set[int] = set()  # ids of our actors
-        self.ticking: Ticking | None = None
-        self._frame = 0  # the last one that was ticked to
         self._taken = False  # whether there is anything to put back
 
     def load(self, name: str) -> None:
@@ -80,11 +70,8 @@ class Server:
 
     def tick(self) -> Any:
         """Take one step and return the snapshot of it: the only place that ticks, and the only one that reads it."""
-        self.ticking = Ticking(time.monotonic(), self._frame)
         frame = self.world.tick(self._patience)
-        self.ticking = None
         snapshot = self.world.get_snapshot()
-        self._frame = snapshot.frame
         if snapshot.frame != frame:
             raise RuntimeError(f"ticked to frame {frame}, the world shows frame {snapshot.frame}")
         return snapshot

@@ -13,7 +13,6 @@ from tmpud.errors import SimulatorError
 from tmpud.geometry import Point, Pose
 from tmpud.roads.carla_coordinates import KMH, to_point
 from tmpud.simulators.carla.server import ROLE, Server, above
-from tmpud.simulators.carla.watchdog import Watchdog
 
 ROOM = 10.0  # [m] around a spawn point where a car appears
 SENSING_RANGE = 80.0  # [m] no car appears in the ego's sight
@@ -30,7 +29,6 @@ class Traffic:
         self._manager.set_random_device_seed(seed % 2**31)
         self._manager.set_hybrid_physics_mode(False)
         self._manager.set_global_distance_to_leading_vehicle(rules["min_gap"])
-        self._watchdog = Watchdog(server, self._manager)
         self._points = list(server.world.get_map().get_spawn_points())
         self._models = _cars(server.world.get_blueprint_library())
         self._ids: set[int] = set()
@@ -110,7 +108,6 @@ class Traffic:
 
         Without an end the next session would hang or crash.
         """
-        self._watchdog.stop()
         self._manager.set_synchronous_mode(False)
         self._manager.shut_down()
 
