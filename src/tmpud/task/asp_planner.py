@@ -8,7 +8,7 @@ one walks along it, the plan is optimal; the walk takes the earliest merge, then
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from tmpud.errors import NoPlanError, UtilityOverflowError
@@ -101,18 +101,13 @@ class AspPlanner:
             if rules and corridor(search, state):
                 raise NoPlanError(f"no plan keeps the rules of {rules.source}; without them there is one")
             raise NoPlanError(explain(domain, state, utility.rank))
-        report = report_of(walk(state, proof.union), utility, optimal=proof.optimal)
-        added = proof.centimetres - report.total_cm
+        plan = walk(state, proof.union)
+        terms, total, steps = utility.total(plan)
+        added = proof.centimetres - total
         if added and rules is None:
-            raise UtilityOverflowError(f"the solver's total is not the plan's: {report.total_cm} cm")
-        return replace(
-            report,
-            rules_m=added / 100.0,
-            transitions=proof.transitions,
-            rounds=proof.rounds,
-            ground_s=proof.ground_s,
-            solve_s=proof.solve_s,
-        )
+            raise UtilityOverflowError(f"the solver's total is not the plan's: {total} cm")
+        sizes, times = (proof.transitions, proof.rounds), (proof.ground_s, proof.solve_s)
+        return PlanReport(plan, *terms, total, proof.optimal, added / 100.0, *sizes, *times, steps)
 
     def instance(self, state: State, request: ServiceRequest, cost: Cost, safe: Safe) -> str:
         """Return the facts that, with the package's .lp files, make plain ``clingo`` find the same optimum."""

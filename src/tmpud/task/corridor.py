@@ -115,8 +115,9 @@ def corridor(search: Search, start: State, limit: int | None = None) -> Corridor
 
     The limit is by default the rank of the best plan.
     """
-    distance, touched = {start: 0}, list[tuple[Transition, int]]()
-    bound, optimum, widest = search.bound, FORBIDDEN, FORBIDDEN - 1 if limit is None else limit
+    distance, touched = {start: 0}, list[tuple[int, int, Transition]]()
+    successors, rank_of, bound = search.successors, search.rank, search.bound
+    optimum, widest = FORBIDDEN, FORBIDDEN - 1 if limit is None else limit
     queue, done = [(bound.get(start, FORBIDDEN), start)], set[State]()
     while queue and queue[0][0] <= widest:
         estimate, state = heappop(queue)
@@ -127,23 +128,19 @@ def corridor(search: Search, start: State, limit: int | None = None) -> Corridor
             optimum = distance[state] = min(optimum, estimate)
             widest = optimum if limit is None else limit
             continue
-        for transition in search.successors(state):
-            rank, following = search.rank(transition), transition.next_state
-            there = distance[state] + rank
+        here = distance[state]
+        for transition in successors(state):
+            rank, following = rank_of(transition), transition.next_state
+            there = here + rank
             onward = there + bound.get(following, FORBIDDEN)
             if onward <= widest:
-                touched.append((transition, rank))
+                touched.append((onward, rank, transition))
                 if there < distance.get(following, FORBIDDEN):
                     distance[following] = there
                     heappush(queue, (onward, following))
-    return None if optimum == FORBIDDEN else Corridor(_within(touched, search, distance, widest), distance, optimum)
-
-
-def _within(
-    touched: list[tuple[Transition, int]], search: Search, distance: Mapping[State, int], limit: int
-) -> dict[Transition, int]:
-    bound = search.bound
-    return {step: rank for step, rank in touched if distance[step.state] + rank + bound[step.next_state] <= limit}
+    if optimum == FORBIDDEN:
+        return None
+    return Corridor({step: rank for onward, rank, step in touched if onward <= widest}, distance, optimum)
 
 
 def whole_map(search: Search, start: State) -> Corridor:

@@ -43,9 +43,10 @@ class Domain:
 
     def successors(self, state: State) -> tuple[Transition, ...]:
         """Return the transitions out of a state; Cost says which of them can be driven."""
-        if state not in self._successors:
-            self._successors[state] = tuple(dict.fromkeys(self._leaving(state)))
-        return self._successors[state]
+        known = self._successors.get(state)
+        if known is None:
+            known = self._successors[state] = tuple(dict.fromkeys(self._leaving(state)))
+        return known
 
     def predecessors(self, state: State) -> Iterator[Transition]:
         """Yield the transitions into a state; one may come twice."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter, defaultdict
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from itertools import combinations
 from time import perf_counter
 from typing import NamedTuple
@@ -64,7 +65,7 @@ def ground(start: State, last: int, given: Corridor, options: Sequence[str] = ()
     control = clingo.Control([*OPTIONS, *options])
     ways = given.stretches(start)
     with control.backend() as program:
-        do = [program.add_atom(clingo.Function("do", [clingo.Number(n)])) for n in range(len(ways))]
+        do = [program.add_atom(_do(n)) for n in range(len(ways))]
         visit: defaultdict[State, int] = defaultdict(program.add_atom)
         program.add_rule([visit[start]])
         choices: defaultdict[State, list[int]] = defaultdict(list)
@@ -124,6 +125,11 @@ class _Weights(clingo.Observer):
     def check(self) -> None:
         if any(total >= LIMIT for total in self._totals.values()):
             raise UtilityOverflowError("the rules add too much: all costs together must lie below 2^31")
+
+
+@cache
+def _do(way: int) -> clingo.Symbol:
+    return clingo.Function("do", [clingo.Number(way)])
 
 
 def _name(atom: clingo.Symbol) -> str:

@@ -16,22 +16,23 @@ def taste(transition: Transition) -> Taste:
 
 def preferred(start: State, union: Iterable[Transition]) -> Transition | None:
     """Return the preferred transition of the first state on the walk that has several; None where it has no choice."""
-    ways: dict[State, list[Transition]] = {}
-    for transition in sorted(union, key=taste):
-        ways.setdefault(transition.state, []).append(transition)
-    state = start
-    while state in ways and len(ways[state]) == 1:
-        state = ways[state][0].next_state
-    return ways[state][0] if state in ways else None
+    ways, state = _ways(union), start
+    while len(here := ways.get(state, [])) == 1:
+        state = here[0].next_state
+    return min(here, key=taste, default=None)
 
 
 def walk(start: State, union: Iterable[Transition]) -> TaskPlan:
     """Return the preferred plan among all that the union of optimal plans holds; they all have the same rank."""
-    preferred: dict[State, Transition] = {}
-    for transition in sorted(union, key=taste):
-        preferred.setdefault(transition.state, transition)
-    plan, state = [], start
-    while state in preferred:
-        plan.append(preferred[state])
-        state = preferred[state].next_state
+    ways, plan, state = _ways(union), list[Transition](), start
+    while here := ways.get(state):
+        plan.append(here[0] if len(here) == 1 else min(here, key=taste))
+        state = plan[-1].next_state
     return tuple(plan)
+
+
+def _ways(union: Iterable[Transition]) -> dict[State, list[Transition]]:
+    found: dict[State, list[Transition]] = {}
+    for transition in union:
+        found.setdefault(transition.state, []).append(transition)
+    return found

@@ -48,22 +48,25 @@ class Utility:
         self._penalties = _Penalties(preset)
 
     def terms(self, transition: Transition) -> Terms:
-        cost, floor = self._cost[transition], self._floor.get(transition, -math.inf)
-        safety = self._penalties[self._safe[transition]]
-        return Terms(floor if floor > cost else cost, safety, self._turns[transition.action])
+        return Terms(*self._terms(transition))
 
     def rank(self, transition: Transition) -> int:
         """Return the rank of a transition, FORBIDDEN where it cannot be driven."""
-        cost, safety, turns = self.terms(transition)
+        cost, safety, turns = self._terms(transition)
         if cost == math.inf:
             return FORBIDDEN
         return (centimetres(cost + safety + turns, transition) << 2 * FIELD) + STEP[transition.action]
 
+    def _terms(self, transition: Transition) -> tuple[float, float, float]:
+        cost, floor = self._cost[transition], self._floor.get(transition, -math.inf)
+        penalty, turns = self._penalties[self._safe[transition]], self._turns[transition.action]
+        return floor if floor > cost else cost, penalty, turns
+
     def total(self, plan: TaskPlan) -> Total:
         """Return what a whole plan costs."""
-        rows = tuple([self.terms(transition) for transition in plan])
-        terms = Terms(*(math.fsum(column) for column in zip(*rows, strict=True))) if rows else Terms(0.0, 0.0, 0.0)
-        return Total(terms, sum(centimetres(sum(row), step) for row, step in zip(rows, plan, strict=True)), rows)
+        steps = tuple([self.terms(transition) for transition in plan])
+        terms = Terms(*map(math.fsum, zip(*steps, strict=True))) if steps else Terms(0.0, 0.0, 0.0)
+        return Total(terms, sum(map(centimetres, map(sum, steps), plan)), steps)
 
 
 class _Penalties(dict[float, float]):
@@ -111,6 +114,8 @@ def most(centimetres: int) -> int:
 
 def check_total(ranks: Mapping[Transition, int]) -> None:
     """Raise UtilityOverflowError where a plan over these transitions could cost more than the solver can hold."""
+    if split(sum(ranks.values()))[0] < LIMIT:
+        return
     dearest: dict[tuple[str, int], int] = {}
     for transition, rank in ranks.items():
         dearest[transition.state] = max(rank, dearest.get(transition.state, 0))
