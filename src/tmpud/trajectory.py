@@ -8,6 +8,8 @@ import numpy as np
 
 from tmpud.scene import FloatArray, Vehicles
 
+STRAIGHT = 1e-20  # [rad] an angle whose sine is the angle
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Trajectory:
@@ -31,10 +33,10 @@ class Trajectory:
 def predict(others: Vehicles, times: FloatArray) -> FloatArray:
     """Return the poses (N, T, 3) of N vehicles that keep their speed and yaw rate (Alg. 1, line 3)."""
     turn = others.yaw_rate[:, None] * times  # (N, T)
-    turning = np.abs(turn) > 1e-9
-    half = np.where(turning, turn / 2, 1.0)
-    chord = others.speed[:, None] * times * np.where(turning, np.sin(half) / half, 1.0)
-    mid = others.heading[:, None] + turn / 2
+    half = turn / 2
+    mid = others.heading[:, None] + half
+    half[half == 0] = STRAIGHT
+    chord = others.speed[:, None] * times * (np.sin(half) / half)
     poses = np.empty((*turn.shape, 3))
     poses[..., 0] = others.x[:, None] + chord * np.cos(mid)
     poses[..., 1] = others.y[:, None] + chord * np.sin(mid)

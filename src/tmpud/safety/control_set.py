@@ -78,19 +78,21 @@ def safety_index(ego: Trajectory, others: Vehicles, predicted: FloatArray, prese
     speed_i = others.speed[:, None]
     dvx, dvy = ego.speeds * cos - speed_i * cos_i, ego.speeds * sin - speed_i * sin_i
     turning_i = (dy * cos_i - dx * sin_i) * (others.speed * others.yaw_rate)[:, None]  # dp.a_i
-    d = np.hypot(dx, dy)
-    apart = d >= TOUCHING
-    safe_d = np.where(apart, d, 1.0)
-    d_dot = np.where(apart, (dx * dvx + dy * dvy) / safe_d, 0.0)
-    # d'' of an ego that neither accelerates nor turns
-    drifting = (dvx * dvx + dvy * dvy - turning_i - d_dot**2) / safe_d
-    alpha = preset.closing_weight
-    return SafetyIndex(
-        phi=preset.safety_distance**2 - d**2 - alpha * d_dot,
-        drift=np.where(apart, -2 * d * d_dot - alpha * drifting, np.inf),
-        by_acceleration=np.where(apart, -alpha * (dx * cos + dy * sin) / safe_d, 0.0),
-        by_yaw_rate=np.where(apart, -alpha * ego.speeds * (dy * cos - dx * sin) / safe_d, 0.0),
+    d_squared, closing = dx * dx + dy * dy, dx * dvx + dy * dvy  # closing: dp.dv = d d'
+    touching = d_squared < TOUCHING**2
+    d = np.sqrt(d_squared)
+    d[touching] = 1.0
+    d_dot, weight = closing / d, -preset.closing_weight / d
+    # d d'' of an ego that neither accelerates nor turns
+    drifting = dvx * dvx + dvy * dvy - turning_i - d_dot * d_dot
+    index = SafetyIndex(
+        phi=preset.safety_distance**2 - d_squared - preset.closing_weight * d_dot,
+        drift=weight * drifting - 2 * closing,
+        by_acceleration=weight * (dx * cos + dy * sin),
+        by_yaw_rate=weight * (ego.speeds * (dy * cos - dx * sin)),
     )
+    index.drift[touching] = np.inf
+    return index
 
 
 def in_use(index: SafetyIndex, ego: Trajectory, preset: Preset) -> NDArray[np.bool_]:

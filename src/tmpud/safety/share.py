@@ -66,7 +66,7 @@ def _mirrored(turning: tuple[float, float], effect: FloatArray) -> tuple[Bound, 
 
 def _turn_at(slack: FloatArray, slope: FloatArray, steering: bool) -> FloatArray:
     """Return the turn at which ``slope * x`` uses up the slack; beyond all turns where there is no slope."""
-    effect = np.where((slope > 0) | (slack != 0), slack / slope, np.inf)
+    effect = np.fmin(slack / slope, np.inf)  # 0 / 0 is all turns
     return np.arctan(effect) if steering else effect
 
 
@@ -79,7 +79,9 @@ def _partial(
     """
     start = np.tan(full) if steering else full
     if steering:
-        rise = -np.log1p(-2 * np.sin(width / 2) ** 2 - start * np.sin(width)) - start * width
+        half = np.tan(width / 2)
+        sine = 2 * half / (1 + half * half)
+        rise = -np.log1p(-sine * (half + start)) - start * width  # 2 sin^2(width / 2) = sine * half
     else:
         rise = width**2 / 2  # integral of x - x(full)
     line = _clip((slack - slope * start) / span, 0.0, 1.0) * width - slope / span * rise
