@@ -77,7 +77,8 @@ def scene(rng: np.random.Generator, vehicles: int, instants: int) -> SafetyCase:
     size = np.ones(vehicles)
     moving = (rng.uniform(-np.pi, np.pi, vehicles), rng.uniform(0, 14, vehicles), rng.normal(0, 0.1, vehicles))
     names = tuple(map(str, range(vehicles)))
-    around = Vehicles(names, ("",) * vehicles, x, y, 0 * size, *moving, 0 * size, 4.7 * size, 1.9 * size)
+    columns = (x, y, 0 * size, *moving, 0 * size, 4.7 * size, 1.9 * size)
+    around = Vehicles.of_table(names, ("",) * vehicles, np.stack(columns, axis=1))
     return SafetyCase(Trajectory(times, poses, np.full(instants, 8.0)), around)
 
 

@@ -1,11 +1,12 @@
-"""What a simulator reports and accepts: states in SI units, the others as one structure of arrays."""
+"""What a simulator reports and accepts: states in SI units, the others one by one and as arrays."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
-from itertools import chain
+from itertools import chain, compress
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +30,11 @@ class VehicleState:
     length: float = 4.7  # [m]
     width: float = 1.9  # [m]
 
+    @property
+    def body(self) -> Body:
+        x, y, heading = self.pose
+        return Body(x, y, self.z, heading, self.speed, self.yaw_rate, self.acceleration, self.length, self.width)
+
 
 @dataclass(frozen=True, slots=True)
 class Control:
@@ -38,49 +44,75 @@ class Control:
     steering: float  # [rad], positive to the left
 
 
+class Body(NamedTuple):
+    """Where a vehicle is, how it moves and how large it is."""
+
+    x: float  # [m] centre of its box
+    y: float  # [m]
+    z: float  # [m]
+    heading: float  # [rad]
+    speed: float  # [m/s]
+    yaw_rate: float  # [rad/s]
+    acceleration: float  # [m/s^2]
+    length: float  # [m]
+    width: float  # [m]
+
+
+class _Column:
+    """One value of all bodies (N,), in the unit that Body says."""
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self._index = Body._fields.index(name)
+
+    def __get__(self, vehicles: Vehicles, owner: type) -> FloatArray:
+        return vehicles.columns[self._index]
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Vehicles:
-    """N surrounding vehicles, each field of shape (N,)."""
+    """N surrounding vehicles, one by one, and as arrays once somebody asks for one."""
 
     ids: tuple[str, ...]
     lanes: tuple[str, ...]  # lanes through junctions included; "" where on none
-    x: FloatArray  # [m] centre of the box
-    y: FloatArray  # [m]
-    z: FloatArray  # [m]
-    heading: FloatArray  # [rad]
-    speed: FloatArray  # [m/s]
-    yaw_rate: FloatArray  # [rad/s]
-    acceleration: FloatArray  # [m/s^2]
-    length: FloatArray  # [m]
-    width: FloatArray  # [m]
+    bodies: Sequence[Body]
+    _columns: list[tuple[FloatArray, ...]] = field(default_factory=list, init=False, repr=False)
+
+    x = _Column()
+    y = _Column()
+    z = _Column()
+    heading = _Column()
+    speed = _Column()
+    yaw_rate = _Column()
+    acceleration = _Column()
+    length = _Column()
+    width = _Column()
 
     def __len__(self) -> int:
         return len(self.ids)
 
+    @property
+    def columns(self) -> tuple[FloatArray, ...]:
+        """The bodies as nine arrays (N,)."""
+        if not self._columns:
+            flat = np.array([*chain.from_iterable(self.bodies)], dtype=np.float64)
+            self._columns.append(tuple(flat.reshape(len(self.bodies), len(Body._fields)).T.copy()))
+        return self._columns[0]
+
     def take(self, keep: NDArray[np.bool_]) -> Vehicles:
         """Return the vehicles at which ``keep`` (N,) is true."""
-        index = np.flatnonzero(keep)
-        arrays = {name: getattr(self, name)[index] for name in _ARRAYS}
-        return Vehicles(ids=tuple(self.ids[i] for i in index), lanes=tuple(self.lanes[i] for i in index), **arrays)
+        kept = keep.tolist()
+        lanes, bodies = compress(self.lanes, kept), compress(self.bodies, kept)
+        return Vehicles(tuple(compress(self.ids, kept)), tuple(lanes), tuple(bodies))
 
     @classmethod
-    def of(cls, states: list[VehicleState]) -> Vehicles:
-        """Gather single vehicles into arrays."""
-        rows = [
-            (s.pose.x, s.pose.y, s.z, s.pose.heading, s.speed, s.yaw_rate, s.acceleration, s.length, s.width)
-            for s in states
-        ]
-        return cls.of_rows(tuple(s.id for s in states), tuple(s.lane for s in states), rows)
+    def of(cls, states: Sequence[VehicleState]) -> Vehicles:
+        """Gather single vehicles."""
+        return cls(tuple(s.id for s in states), tuple(s.lane for s in states), [s.body for s in states])
 
     @classmethod
-    def of_rows(cls, ids: tuple[str, ...], lanes: tuple[str, ...], rows: Sequence[tuple[float, ...]]) -> Vehicles:
-        """Gather rows of x, y, z, heading, speed, yaw rate, acceleration, length and width into arrays."""
-        shape = len(ids), len(_ARRAYS)
-        flat = np.array([*chain.from_iterable(rows)], dtype=np.float64)
-        return cls(ids, lanes, *flat.reshape(shape).T.copy())
-
-
-_ARRAYS = ("x", "y", "z", "heading", "speed", "yaw_rate", "acceleration", "length", "width")
+    def of_table(cls, ids: tuple[str, ...], lanes: tuple[str, ...], table: FloatArray) -> Vehicles:
+        """Take the bodies from a table (N, 9)."""
+        return cls(ids, lanes, [*map(Body._make, table.tolist())])
 
 
 @dataclass(frozen=True, slots=True, eq=False)

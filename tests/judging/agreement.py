@@ -14,7 +14,8 @@ def random_vehicles(n: int, rng: np.random.Generator, spread: float = 6.0) -> Ve
     x, y = rng.uniform(-spread, spread, size=(2, n))
     length, width = rng.uniform(0.3, 12, size=n), rng.uniform(0.3, 3, size=n)
     names = tuple(map(str, range(n)))
-    return Vehicles(names, ("",) * n, x, y, zero, rng.uniform(-4, 4, size=n), zero, zero, zero, length, width)
+    columns = x, y, zero, rng.uniform(-4, 4, size=n), zero, zero, zero, length, width
+    return Vehicles.of_table(names, ("",) * n, np.stack(columns, axis=1))
 
 
 def polygons(x: FloatArray, y: FloatArray, heading: FloatArray, length: FloatArray, width: FloatArray) -> FloatArray:

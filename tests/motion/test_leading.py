@@ -104,7 +104,7 @@ def test_the_first_look_leaves_out_nobody_who_is_in_the_way(route: Route, monkey
     ego = VehicleState("ego", route.pose_at(0.0), "", speed=5.0)
     scenes = [Scene(0.0, ego, Vehicles.of([beside(route, rng) for _ in range(3)]), {}) for _ in range(3000)]
     found = [leader(scene, route, 0.0) for scene in scenes]
-    monkeypatch.setattr(leading, "_near", lambda scene, *_: [(0, box) for box in leading._boxes(scene.others)])
+    monkeypatch.setattr(leading, "_near", lambda scene, *_: [(0, box) for box in scene.others.bodies])
     assert found == [leader(scene, route, 0.0) for scene in scenes]
     assert 300 < sum(one is None for one in found) < 2700
 

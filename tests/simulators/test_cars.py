@@ -6,7 +6,7 @@ import pytest
 
 from tmpud.geometry import Pose
 from tmpud.roads import load_map
-from tmpud.scene import Control, Vehicles
+from tmpud.scene import Body, Control, Vehicles
 from tmpud.simulators import cars as cars_module
 from tmpud.simulators.cars import SENSING_RANGE, standing_at
 from tmpud.simulators.sumo import SumoSimulator
@@ -66,6 +66,5 @@ def test_cars_keep_the_minimum_gap_in_a_queue(blocks_net: Path, gap: float) -> N
 def test_room_for_a_car_is_wanted_before_and_behind_and_not_on_the_next_lane(
     x: float, y: float, is_there: bool
 ) -> None:
-    row = (x, y, 0.0, 0.0, 5.0, 0.0, 0.0, 5.0, 1.8)
-    others = Vehicles.of_rows(("car",), ("lane",), [row])
+    others = Vehicles(("car",), ("lane",), [Body(x, y, 0.0, 0.0, 5.0, 0.0, 0.0, 5.0, 1.8)])
     assert standing_at(others, Pose(0.0, 0.0, 0.0)) == (["car"] if is_there else [])

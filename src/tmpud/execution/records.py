@@ -27,8 +27,7 @@ def estimated(time: float, step: Transition, estimate: SafetyEstimate) -> Estima
 
 
 def _states(others: Vehicles) -> tuple[tuple[float, float, float, float, float], ...]:
-    columns = (others.x, others.y, others.heading, others.speed, others.yaw_rate)
-    return tuple(zip(*(column.tolist() for column in columns), strict=True))
+    return tuple((car.x, car.y, car.heading, car.speed, car.yaw_rate) for car in others.bodies)
 
 
 def _planes(sets: SafeSets) -> tuple[tuple[Plane, ...], ...]:

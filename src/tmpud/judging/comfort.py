@@ -69,8 +69,7 @@ def time_to_collision(scene: Scene, rules: JudgingRules) -> float:
     own_x, own_y, own_heading = ego.pose
     forward_x, forward_y = math.cos(own_heading), math.sin(own_heading)
     same_way = math.cos(rules.same_direction)
-    columns = (others.x, others.y, others.z, others.heading, others.speed, others.length, others.width)
-    for x, y, z, heading, speed, length, width in zip(*(column.tolist() for column in columns), strict=True):
+    for x, y, z, heading, speed, _, _, length, width in others.bodies:
         dx, dy = x - own_x, y - own_y
         aside = abs(dy * forward_x - dx * forward_y) * 2
         if aside >= ego.width + length + width:  # most are; however it is turned

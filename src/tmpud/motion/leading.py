@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from tmpud.geometry import Point, Pose
 from tmpud.motion.route import SPACING, Route
-from tmpud.scene import Scene, Vehicles
+from tmpud.scene import Body, Scene
 
 LOOK_AHEAD = 50.0  # [m]
 SAME_LEVEL = 3.0  # [m]
@@ -21,18 +21,6 @@ class Obstacle(NamedTuple):
 
     gap: float  # [m] from the ego's front bumper
     speed: float  # [m/s] along the route
-
-
-class _Box(NamedTuple):
-    """Where a vehicle is, how fast and how large."""
-
-    x: float  # [m] of its centre
-    y: float  # [m]
-    z: float  # [m]
-    heading: float  # [rad]
-    speed: float  # [m/s]
-    length: float  # [m]
-    width: float  # [m]
 
 
 def leader(scene: Scene, route: Route, station: float) -> Obstacle | None:
@@ -53,7 +41,7 @@ def leader(scene: Scene, route: Route, station: float) -> Obstacle | None:
     return Obstacle(gap, max(nearest.speed * math.cos(nearest.heading - along), 0.0))
 
 
-def _rear(box: _Box, route: Route, ahead: range, i: int, station: float, reach: float) -> float:
+def _rear(box: Body, route: Route, ahead: range, i: int, station: float, reach: float) -> float:
     """Return the station at which a box begins to reach into the way [m]; inf where it keeps off, or is left behind.
 
     It is near to the route's i-th point.
@@ -70,7 +58,7 @@ def _rear(box: _Box, route: Route, ahead: range, i: int, station: float, reach: 
     return min(s if abs(d) < reach else middle for s, d in rim)
 
 
-def _near(scene: Scene, route: Route, ahead: range) -> list[tuple[int, _Box]]:
+def _near(scene: Scene, route: Route, ahead: range) -> list[tuple[int, Body]]:
     """Return the vehicles on the ego's level that may reach into the way ahead, with the point at which it comes near.
 
     These are all that do, and perhaps a few more.
@@ -78,14 +66,15 @@ def _near(scene: Scene, route: Route, ahead: range) -> list[tuple[int, _Box]]:
     From a place to which a box keeps some metres, the way takes as many to come up to it: so far it need not be looked
     at. The box is first taken for its circle, then kept from the straight line that goes on from the place.
     """
-    room = scene.ego.width / 2 + SIDE_ROOM + SPACING
-    near: list[tuple[int, _Box]] = []
-    for box in _boxes(scene.others):
-        circle = math.hypot(box.length, box.width) / 2 + room
-        here, end = ahead.start, ahead.stop if abs(box.z - scene.ego.z) < SAME_LEVEL else 0
+    poses, hypot, room = route.poses, math.hypot, scene.ego.width / 2 + SIDE_ROOM + SPACING
+    near: list[tuple[int, Body]] = []
+    for box in scene.others.bodies:
+        x, y, z, _, _, _, _, length, width = box
+        circle = hypot(length, width) / 2 + room
+        here, end = ahead.start, ahead.stop if abs(z - scene.ego.z) < SAME_LEVEL else 0
         while here < end:
-            place = route.poses[here]
-            off = math.hypot(box.x - place.x, box.y - place.y) - circle
+            place = poses[here]
+            off = hypot(x - place[0], y - place[1]) - circle
             if off < 0.0:
                 off = _beside_line(place, box) - room
                 if off < 0.0:
@@ -95,19 +84,14 @@ def _near(scene: Scene, route: Route, ahead: range) -> list[tuple[int, _Box]]:
     return near
 
 
-def _boxes(others: Vehicles) -> list[_Box]:
-    columns = (others.x, others.y, others.z, others.heading, others.speed, others.length, others.width)
-    return [*map(_Box, *(column.tolist() for column in columns))]
-
-
-def _beside_line(line: Pose, box: _Box) -> float:
+def _beside_line(line: Pose, box: Body) -> float:
     """Return how far a box keeps from a straight line [m], negative where it reaches over it."""
-    turn = box.heading - line.heading
-    across = abs((box.y - line.y) * math.cos(line.heading) - (box.x - line.x) * math.sin(line.heading))
+    (x, y, heading), turn = line, box.heading - line.heading
+    across = abs((box.y - y) * math.cos(heading) - (box.x - x) * math.sin(heading))
     return across - (box.length * abs(math.sin(turn)) + box.width * abs(math.cos(turn))) / 2
 
 
-def _rim(box: _Box) -> list[Point]:
+def _rim(box: Body) -> list[Point]:
     """Return points on the rim of a box."""
     cos, sin = math.cos(box.heading), math.sin(box.heading)
     ends = [(a * box.length, b * box.width) for a, b in RIM]

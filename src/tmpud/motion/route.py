@@ -69,14 +69,18 @@ class Route:
 
     def nearest(self, x: float, y: float, among: range, guess: int) -> int:
         """Return which of some points that follow each other is nearest to (x, y); the better the guess, the sooner."""
-        poses, nearest = self.poses, guess
-        least = math.hypot(x - poses[guess].x, y - poses[guess].y)
+        poses, hypot, nearest = self.poses, math.hypot, guess
+        px, py, _ = poses[guess]
+        least = hypot(x - px, y - py)
         i, end = among.start, among.stop
         while i < end:
-            distance = math.hypot(x - poses[i].x, y - poses[i].y)
+            px, py, _ = poses[i]
+            distance = hypot(x - px, y - py)
             if distance < least:
                 nearest, least = i, distance
-            i += 1 + int((distance - least) / SPACING)  # those between are no nearer
+                i += 1
+            else:
+                i += 1 + int((distance - least) / SPACING)  # those between are no nearer
         return nearest
 
     def beside(self, x: float, y: float, i: int) -> tuple[float, float]:

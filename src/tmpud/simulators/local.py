@@ -216,5 +216,5 @@ def _by_road(everyone: Vehicles) -> Mapping[int, Vehicles]:
     for road in np.unique(roads).tolist():
         there = everyone.take((roads == road) & ~egos)
         lanes = tuple(lane_name(0, int(lane[-1:])) if lane else "" for lane in there.lanes)
-        found[road] = replace(there, y=there.y - road * APART, lanes=lanes)
+        found[road] = Vehicles(there.ids, lanes, [car._replace(y=car.y - road * APART) for car in there.bodies])
     return found

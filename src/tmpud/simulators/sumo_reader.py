@@ -9,7 +9,7 @@ from types import ModuleType
 from typing import Any
 
 from tmpud.geometry import wrap_angle
-from tmpud.scene import Vehicles
+from tmpud.scene import Body, Vehicles
 
 EGO_ID = "ego"
 DT = 0.05  # [s] of one step
@@ -45,7 +45,7 @@ class SumoReader:
         position, angle, speed, acceleration, lane = self.fields
         ids = tuple(sorted(seen.keys() - {EGO_ID}))
         headings, sizes = self._headings_at(step), self._sizes
-        rows, lanes = [], []
+        bodies, lanes = [], []
         for vehicle in ids:
             values = seen[vehicle]
             x, y, z = values[position]
@@ -53,9 +53,10 @@ class SumoReader:
             length, width = sizes.get(vehicle) or self._size(vehicle)
             x, y = x - length / 2 * math.cos(heading), y - length / 2 * math.sin(heading)
             yaw_rate = self._yaw_rate(vehicle, heading, step)
-            rows.append((x, y, z, heading, values[speed], yaw_rate, values[acceleration], length, width))
+            moving = values[speed], yaw_rate, values[acceleration]
+            bodies.append(Body(x, y, z, heading, *moving, length, width))
             lanes.append(values[lane])
-        return Vehicles.of_rows(ids, tuple(lanes), rows)
+        return Vehicles(ids, tuple(lanes), bodies)
 
     def signals(self, lights: Iterable[str], time: float) -> Mapping[str, str]:
         """Return what the lights show; the same object as long as none has come to its next switch."""

@@ -10,7 +10,7 @@ import numpy as np
 
 from tmpud.events import Estimated
 from tmpud.safety import control_set
-from tmpud.scene import Vehicles
+from tmpud.scene import Body, Vehicles
 from tmpud.trajectory import predict
 from tmpud.viewer.ground import line
 from tmpud.viewer.memory import preset_of
@@ -40,9 +40,8 @@ def planes(event: Estimated) -> list[list[list[float] | None]]:
 
 def predicted(event: Estimated) -> list[list[int]]:
     """Return where each vehicle was predicted to be at the instants, as lines."""
-    rows = [(x, y, 0.0, heading, speed, yaw_rate, 0.0, 0.0, 0.0) for x, y, heading, speed, yaw_rate in event.others]
-    if not rows:
+    cars = [Body(x, y, 0.0, heading, speed, yaw_rate, 0.0, 0.0, 0.0) for x, y, heading, speed, yaw_rate in event.others]
+    if not cars:
         return []
-    others = Vehicles.of_rows(event.ids, event.ids, rows)
-    poses = predict(others, np.array([row[0] for row in event.trajectory]))
+    poses = predict(Vehicles(event.ids, event.ids, cars), np.array([row[0] for row in event.trajectory]))
     return [line((x, y) for x, y, _ in path) for path in poses.tolist()]

@@ -55,7 +55,7 @@ class Drive:
     def _standing(self, pose: Pose) -> list[int]:
         """Return who stands where the ego is to appear."""
         ids, table = self._reader.read(self._snapshot, None)
-        others = Vehicles(tuple(map(str, ids)), ("",) * len(ids), *table.T)
+        others = Vehicles.of_table(tuple(map(str, ids)), ("",) * len(ids), table)
         return [int(name) for name in standing_at(others, pose)]
 
     def step(self, acceleration: float = 0.0, steering: float = 0.0) -> None:

@@ -163,4 +163,4 @@ class CarlaSimulator:
         table = self._table[rows]
         for name, (x, y, z, heading) in zip(names, table[:, :4].tolist(), strict=True):
             self._lanes[name] = self._finder.lane(Pose(x, y, heading), z, (self._lanes.get(name, ""),))
-        return Vehicles(names, tuple(self._lanes[name] for name in names), *table.T.copy())
+        return Vehicles.of_table(names, tuple(self._lanes[name] for name in names), table)
