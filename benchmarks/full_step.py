@@ -22,8 +22,8 @@ from benchmarks.harness import Result, SkipError, progress
 from tmpud.roads import RoadNetwork, load_map
 from tmpud.runner import Mission, drive
 from tmpud.scene import Control, Scene
+from tmpud.simulators.conventions import EGO_ID
 from tmpud.simulators.sumo import SumoSimulator
-from tmpud.simulators.sumo_reader import EGO_ID
 
 CHUNK = 250  # steps
 FIRST_SEED = 500

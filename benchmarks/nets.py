@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import os
 import re
-import subprocess
-import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib.resources import files
@@ -13,6 +10,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from tmpud.roads.loading import map_file
+from tmpud.roads.sumo_tools import run_tool
 
 SHIPPED = "sumo:"  # nets that come with the Python package eclipse-sumo, by their path in its tools
 _GRID = re.compile(r"grid:(\d+):(\d+)(:even)?")
@@ -42,14 +40,7 @@ def net_file(name: str) -> Iterator[Path]:
 
 def _netgenerate(file: Path, crossings: str, lanes: str, *, even: bool) -> None:
     """Draw a net without turning round, at one speed everywhere: the quickest way is the shortest one."""
-    size = ["--grid", "--grid.number", crossings, "--default.lanenumber", lanes, "--grid.length", str(BLOCK)]
-    shape = [] if even else ["--perturb-x", SHIFT, "--perturb-y", SHIFT, "--seed", "1"]
-    ways = ["--no-turnarounds", "--junctions.limit-turn-speed", "-1", "--no-warnings"]
-    command = [_tool(), *size, *shape, *ways, "-o", str(file)]
-    environment = {key: value for key, value in os.environ.items() if value or key != "SUMO_HOME"}
-    subprocess.run(command, check=True, stdout=subprocess.DEVNULL, env=environment)
-
-
-def _tool() -> str:
-    beside = Path(sys.executable).parent / "netgenerate"
-    return str(beside) if beside.exists() else "netgenerate"
+    size = {"grid": "true", "grid.number": crossings, "default.lanenumber": lanes, "grid.length": str(BLOCK)}
+    shape = {} if even else {"perturb-x": SHIFT, "perturb-y": SHIFT, "seed": "1"}
+    ways = {"no-turnarounds": "true", "junctions.limit-turn-speed": "-1", "no-warnings": "true"}
+    run_tool("netgenerate", {**size, **shape, **ways, "output-file": str(file)})

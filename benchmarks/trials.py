@@ -26,8 +26,8 @@ from tmpud.experiments.trials.grid import cells
 from tmpud.experiments.trials.table1 import TRAFFIC, Table1
 from tmpud.roads import load_map
 from tmpud.runner import Mission
+from tmpud.simulators.conventions import DT
 from tmpud.simulators.sumo import SumoSimulator
-from tmpud.simulators.sumo_reader import DT
 
 FIRST_SEED = 500
 LIBSUMO, OURS = "libsumo", "tmpud (ours)"

@@ -9,12 +9,11 @@ from __future__ import annotations
 
 import argparse
 import gzip
-import os
 import re
-import subprocess
-import sys
 import tempfile
 from pathlib import Path
+
+from tmpud.roads.sumo_tools import run_tool
 
 TOOLS = Path(__file__).resolve().parent
 SHIPPED = TOOLS.parent / "src" / "tmpud" / "roads" / "towns"
@@ -37,25 +36,15 @@ def build(source: Path, output: Path) -> Path:
         net = Path(folder) / "town.net.xml"
         inputs = {f"{kind}-files": str(source / f"{source.name}.{suffix}.xml") for kind, suffix in _KINDS.items()}
         options = {**inputs, **OPTIONS, "output-file": str(net)}
-        command = [_netconvert(), *(f"--{name}={value}" for name, value in options.items())]
-        subprocess.run(command, check=True, stdout=subprocess.DEVNULL, env=_environment())
+        run_tool("netconvert", options)
         text = re.sub(r"<!-- generated on .*?-->\n*", "", net.read_text(encoding="utf-8"), flags=re.DOTALL)
+    output.mkdir(parents=True, exist_ok=True)
     town = output / f"{source.name}.net.xml.gz"
     town.write_bytes(gzip.compress(text.encode(), compresslevel=9, mtime=0))
     return town
 
 
 _KINDS = {"node": "nod", "edge": "edg", "connection": "con"}
-
-
-def _netconvert() -> str:
-    beside = Path(sys.executable).parent / "netconvert"
-    return str(beside) if beside.exists() else "netconvert"
-
-
-def _environment() -> dict[str, str]:
-    """Return the environment without an empty SUMO_HOME, which netconvert does not survive."""
-    return {name: value for name, value in os.environ.items() if value or name != "SUMO_HOME"}
 
 
 def main() -> None:

@@ -18,8 +18,8 @@ from pathlib import Path
 from tmpud.roads import RoadNetwork, load_map
 from tmpud.roads.places import request
 from tmpud.roads.towns import PAPER_MISSIONS
+from tmpud.simulators.conventions import DT
 from tmpud.simulators.sumo import SumoSimulator
-from tmpud.simulators.sumo_reader import DT
 
 STANDING = 0.5  # [m/s] a town whose cars are slower than this on average is stuck
 WAITING = 0.1  # [m/s] a car slower than this stands

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
-import sys
 from pathlib import Path
+
+from tmpud.roads.sumo_tools import run_tool
 
 Row = tuple[str, ...]
 
@@ -26,11 +25,6 @@ TWO_BLOCKS_LINKS = (
 # A road out of a ring of one-way roads into a dead end.
 SPUR_NODES = (("A", "0", "0"), ("B", "150", "0"), ("C", "75", "120"), ("D", "300", "0"))
 SPUR_EDGES = (("ab", "A", "B", "1"), ("bc", "B", "C", "1"), ("ca", "C", "A", "1"), ("spur", "B", "D", "1"))
-
-
-def netconvert() -> str:
-    beside = Path(sys.executable).parent / "netconvert"
-    return str(beside) if beside.exists() else "netconvert"
 
 
 def two_blocks(folder: Path) -> Path:
@@ -54,9 +48,7 @@ def build(net: Path, nodes: tuple[Row, ...], edges: tuple[Row, ...], links: tupl
         text = "".join(f"<{name} {_attributes(keys, row)}/>\n" for row in table)
         source.write_text(f"<{root}>\n{text}</{root}>\n", encoding="utf-8")
         options[f"{name}-files"] = str(source)
-    command = [netconvert(), *(f"--{key}={value}" for key, value in options.items())]
-    environment = {key: value for key, value in os.environ.items() if value or key != "SUMO_HOME"}
-    subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=environment)
+    run_tool("netconvert", options)
     return net
 
 

@@ -8,9 +8,9 @@ from tmpud.geometry import Pose
 from tmpud.roads import load_map
 from tmpud.scene import Body, Control, Vehicles
 from tmpud.simulators import cars as cars_module
-from tmpud.simulators.cars import SENSING_RANGE, standing_at
+from tmpud.simulators.cars import standing_at
+from tmpud.simulators.conventions import DT, SENSING_RANGE
 from tmpud.simulators.sumo import SumoSimulator
-from tmpud.simulators.sumo_reader import DT
 from tmpud.simulators.traffic import TrafficRules
 
 

@@ -13,9 +13,8 @@ from tmpud.protocols import Simulator
 from tmpud.roads import load_map
 from tmpud.roads.network import RoadNetwork
 from tmpud.scene import Control, Scene
-from tmpud.simulators.cars import SENSING_RANGE
+from tmpud.simulators.conventions import DT, SENSING_RANGE
 from tmpud.simulators.sumo import SumoSimulator
-from tmpud.simulators.sumo_reader import DT
 
 Start = Callable[..., Simulator]
 CARS = 12

@@ -7,9 +7,9 @@ import pytest
 from tmpud.dynamics import EGO
 from tmpud.roads.sumo_net import read_sumo_net
 from tmpud.scene import Control
+from tmpud.simulators.conventions import DT
 from tmpud.simulators.local import CAR_LENGTH, Condition, LocalRoads, PlacementLaw
 from tmpud.simulators.local_roads import APART, LENGTH, write_net
-from tmpud.simulators.sumo_reader import DT
 from tmpud.symbols import Action
 
 COAST = Control(0.0, 0.0)

@@ -13,8 +13,8 @@ from tmpud.roads import load_map
 from tmpud.roads.network import RoadNetwork
 from tmpud.scene import Control, Scene
 from tmpud.simulators import sumo
+from tmpud.simulators.conventions import DT
 from tmpud.simulators.sumo import SumoSimulator
-from tmpud.simulators.sumo_reader import DT
 from tmpud.simulators.traffic import Spot
 
 Start = Callable[..., SumoSimulator]

@@ -65,11 +65,10 @@ class Cutting:
 
 
 def write_films(run: Intact, films: Films, cutting: Cutting) -> None:
-    """Write what was asked for; say on stderr what of the run is shown, and why that."""
+    """Write what was asked for, once it is checked; say on stderr what of the run is shown, and why that."""
     from tmpud.viewer.film.film import Film
     from tmpud.viewer.film.writing import write_gif, write_mp4
 
-    films.check()
     film = Film(run, cutting.cut())
     clip = film.clip
     typer.echo(f"showing {clip.begin:.1f} s to {clip.end:.1f} s of the drive: {clip.why}", err=True)

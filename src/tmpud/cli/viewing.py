@@ -34,8 +34,7 @@ def replay(
     cutting: Cutting,
 ) -> None:
     """Write one HTML page that plays a run, or compares two; open it in a browser, send it. Or write an animation."""
-    if films:
-        films.check()
+    films.check()
     if trial:
         run = _driven_again(run, trial)
     if films:

@@ -3,13 +3,9 @@
 from __future__ import annotations
 
 import gzip
-import importlib.util
-import os
 import re
-import shutil
 import signal
 import subprocess
-import sys
 import tempfile
 from dataclasses import replace
 from pathlib import Path
@@ -18,6 +14,7 @@ from tmpud.errors import MapError
 from tmpud.roads.network import RoadNetwork
 from tmpud.roads.opendrive.facts import read_facts
 from tmpud.roads.sumo_net import read_sumo_net
+from tmpud.roads.sumo_tools import run_tool
 
 OPTIONS = {
     "offset.disable-normalization": "true",  # the map's own coordinates, which are CARLA's but for the sign of y
@@ -53,33 +50,12 @@ def import_net(source: Path, net: Path) -> RoadNetwork:
 
 def _convert(source: Path, written: Path) -> None:
     options = {"opendrive-files": str(source.absolute()), "output-file": str(written), **OPTIONS}
-    command = [_binary(), *(f"--{name}={value}" for name, value in options.items())]
     try:
-        done = subprocess.run(  # noqa: S603
-            command,
-            stdin=subprocess.DEVNULL,
-            capture_output=True,
-            timeout=TIME_LIMIT,
-            check=False,
-            env={name: value for name, value in os.environ.items() if value or name != "SUMO_HOME"},
-        )
+        done = run_tool("netconvert", options, timeout=TIME_LIMIT, check=False)
     except subprocess.TimeoutExpired as error:
         raise MapError(str(source), None, f"netconvert did not end within {TIME_LIMIT:.0f} s") from error
     if done.returncode or not written.is_file():
         raise MapError(str(source), None, f"netconvert cannot read it: {_why(done.returncode, done.stderr)}")
-
-
-def _binary() -> str:
-    """Return netconvert's path: of this Python's ``eclipse-sumo``, else the system's."""
-    beside = Path(sys.executable).parent / "netconvert"
-    spec = importlib.util.find_spec("sumo")
-    folders = (spec.submodule_search_locations if spec else None) or ()
-    for place in (beside, *(Path(folder) / "bin" / "netconvert" for folder in folders)):
-        if place.is_file():
-            return str(place)
-    if found := shutil.which("netconvert"):
-        return found
-    raise MapError("netconvert", None, "is not installed: pip install 'tmpud[maps]'")
 
 
 def _why(code: int, said: bytes) -> str:

@@ -9,11 +9,10 @@ from types import ModuleType
 from tmpud.geometry import Pose
 from tmpud.roads.network import RoadNetwork
 from tmpud.scene import Vehicles
-from tmpud.simulators.sumo_reader import DT, EGO_ID
+from tmpud.simulators.conventions import DT, EGO_ID, SENSING_RANGE
 from tmpud.simulators.traffic import AHEAD, Circulation, Spot, TrafficRules
 
 TYPE = "car"
-SENSING_RANGE = 80.0  # [m] how far the ego sees
 ROOM_BEHIND, ROOM_AHEAD, ROOM_BESIDE = 15.0, 25.0, 2.5  # [m] around a place where a vehicle appears
 TRIES = 50  # places that are looked at for one car
 STUCK = 180.0  # [s] a car that stands for two cycles of the lights is part of a gridlock

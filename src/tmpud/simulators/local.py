@@ -21,10 +21,11 @@ from tmpud.roads.sumo_net import read_sumo_net
 from tmpud.scene import Control, Scene, Vehicles, VehicleState
 from tmpud.simulators import sumo_ego
 from tmpud.simulators.cars import TYPE
+from tmpud.simulators.conventions import DT, EGO_ID
 from tmpud.simulators.local_roads import APART, LANES, WIDTH, lane_name, road_name, write_net
 from tmpud.simulators.sumo import JOINT
 from tmpud.simulators.sumo_process import Simulation, start
-from tmpud.simulators.sumo_reader import DT, EGO_ID, SumoReader
+from tmpud.simulators.sumo_reader import SumoReader
 from tmpud.simulators.traffic import TrafficRules
 
 CAR_LENGTH = 5.0  # [m] of SUMO's default car

@@ -18,9 +18,10 @@ from tmpud.geometry import Polyline, Pose
 from tmpud.roads.network import RoadNetwork
 from tmpud.scene import Control, Scene, Vehicles, VehicleState
 from tmpud.simulators import sumo_ego
-from tmpud.simulators.cars import SENSING_RANGE, Cars, standing_at
+from tmpud.simulators.cars import Cars, standing_at
+from tmpud.simulators.conventions import DT, EGO_ID, SENSING_RANGE
 from tmpud.simulators.sumo_process import Simulation, start
-from tmpud.simulators.sumo_reader import DT, EGO_ID, SumoReader
+from tmpud.simulators.sumo_reader import SumoReader
 from tmpud.simulators.traffic import Circulation, Spot, TrafficRules
 from tmpud.symbols import ServiceRequest
 

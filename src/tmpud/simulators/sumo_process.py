@@ -7,12 +7,11 @@ import importlib.metadata
 import sys
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from types import ModuleType, TracebackType
-from typing import Self
+from types import ModuleType
 
 from tmpud.errors import SimulatorError
 from tmpud.roads.network import RoadNetwork
-from tmpud.simulators.sumo_reader import DT
+from tmpud.simulators.conventions import DT, Closing
 
 OPTIONS = (
     "--no-step-log", "--no-warnings", "--duration-log.disable", "--collision.check-junctions",
@@ -47,7 +46,7 @@ def start(network: RoadNetwork, seed: int, collision_action: str = "none") -> Mo
     return libsumo
 
 
-class Simulation:
+class Simulation(Closing):
     """SUMO in this process, which holds one simulation at a time; it ends with the ``with`` block."""
 
     _sumo: ModuleType
@@ -61,14 +60,6 @@ class Simulation:
         """End the simulation; a second call does nothing."""
         if self._sumo.isLoaded():
             self._sumo.close()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
 
     @contextlib.contextmanager
     def _errors(self) -> Iterator[None]:

@@ -10,9 +10,8 @@ from typing import Any
 
 from tmpud.geometry import wrap_angle
 from tmpud.scene import Body, Vehicles
+from tmpud.simulators.conventions import DT, EGO_ID
 
-EGO_ID = "ego"
-DT = 0.05  # [s] of one step
 YAW_WINDOW = 11  # steps whose headings tell a yaw rate
 
 

@@ -1,7 +1,6 @@
 """Whole drives on the loopback server: a kinematic one, so nothing here is said of CARLA's physics."""
 
 import math
-import subprocess
 from dataclasses import replace
 from pathlib import Path
 
@@ -9,13 +8,13 @@ import pytest
 from typer.testing import CliRunner
 
 from tests.carla_loopback.running import loopback
-from tests.simulators.nets import netconvert
 from tmpud.cli import app
 from tmpud.errors import SimulatorError
 from tmpud.events import Finished, Header
 from tmpud.experiments.trials.carla import CarlaTrials
 from tmpud.experiments.trials.grid import Grid, Route, cells
 from tmpud.roads import load_map
+from tmpud.roads.sumo_tools import run_tool
 from tmpud.runner import Mission, carla, drive
 from tmpud.simulators.carla.maps import fetch
 from tmpud.simulators.carla.session import Address
@@ -97,8 +96,8 @@ def test_on_a_net_that_is_shifted_against_the_servers_map_all_is_where_the_net_h
     blocks_net: Path, blocks_xodr: Path, tmp_path: Path
 ) -> None:
     shifted = tmp_path / "blocks.net.xml"
-    offset = ["--offset.x", "100", "--offset.y", "50", "--offset.disable-normalization"]
-    subprocess.run([netconvert(), "-s", str(blocks_net), "-o", str(shifted), *offset], check=True)
+    moved = {"offset.x": "100", "offset.y": "50", "offset.disable-normalization": "true"}
+    run_tool("netconvert", {"sumo-net-file": str(blocks_net), "output-file": str(shifted), **moved})
     town = load_map(shifted)
     with loopback(blocks_xodr) as server:
         at = Address(port=server.port)

@@ -24,9 +24,9 @@ from tmpud.roads.network import RoadNetwork
 from tmpud.roads.sumo_net import read_sumo_net
 from tmpud.safety.estimator import SafeSetEstimator
 from tmpud.scene import Control, Scene
+from tmpud.simulators.conventions import DT
 from tmpud.simulators.local import Condition, LocalRoads, PlacementLaw
 from tmpud.simulators.local_roads import lane_name, write_net
-from tmpud.simulators.sumo_reader import DT
 from tmpud.symbols import Action, Place, ServiceRequest, State, Transition
 
 CONDITIONS = {

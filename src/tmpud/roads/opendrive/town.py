@@ -8,7 +8,7 @@ from pathlib import Path
 
 from tmpud.errors import MapError
 from tmpud.geometry import Point, Polyline
-from tmpud.roads.network import SEGMENT_LENGTH, Frame, Junction, LaneConnection, RoadNetwork
+from tmpud.roads.network import Frame, Junction, LaneConnection, RoadNetwork
 from tmpud.roads.opendrive.crossing import with_right_of_way
 from tmpud.roads.opendrive.facts import Facts, read_facts
 from tmpud.roads.opendrive.lanes import LaneParts, Strands, read_lanes
@@ -20,7 +20,7 @@ from tmpud.roads.rows import map_name
 _GEO = re.compile(r"<geoReference>\s*(?:<!\[CDATA\[)?(.*?)(?:\]\]>)?\s*</geoReference>", re.DOTALL)
 
 
-def read_town(path: Path, segment_length: float = SEGMENT_LENGTH) -> RoadNetwork:
+def read_town(path: Path) -> RoadNetwork:
     """Read a file by ``carla.Map``; MapError where it cannot be read. A damaged one may end the process."""
     import carla
 
@@ -31,16 +31,14 @@ def read_town(path: Path, segment_length: float = SEGMENT_LENGTH) -> RoadNetwork
         strands, marks = read_strands(town, facts.roads), read_marks(town)
         if all(strand.junction for strand in strands.values()):
             raise ValueError("there is no lane outside of junctions on which cars drive")
-        return _network(path, facts, strands, marks, _frame(text), segment_length)
+        return _network(path, facts, strands, marks, _frame(text))
     except ValueError as error:
         raise MapError(str(path), None, f"{error}") from error
     except (RuntimeError, LookupError, OverflowError, MemoryError) as error:
         raise MapError(str(path), None, f"CARLA's parser cannot read it: {error}") from error
 
 
-def _network(
-    path: Path, facts: Facts, strands: Strands, marks: Sequence[Mark], frame: Frame, segment_length: float
-) -> RoadNetwork:
+def _network(path: Path, facts: Facts, strands: Strands, marks: Sequence[Mark], frame: Frame) -> RoadNetwork:
     lanes = list(read_lanes(strands, facts.roads))
     links, inner, turnarounds = read_links(lanes, strands)
     links, lights = with_signals(links, inner, lanes, Lookup(marks, strands))
@@ -56,7 +54,6 @@ def _network(
         digest=facts.digest,
         warnings=tuple(_warnings(lanes, connections, turnarounds, marks, lights)),
         parts={str(part): each.lane.id for each in lanes for part in each.parts},
-        segment_length=segment_length,
     )
 
 

@@ -11,9 +11,10 @@ from tmpud.scene import FloatArray, Vehicles
 from tmpud.simulators.carla.ego import SETTLING, Ego
 from tmpud.simulators.carla.lights import Lights
 from tmpud.simulators.carla.reader import Reader
-from tmpud.simulators.carla.server import DT, Server
+from tmpud.simulators.carla.server import Server
 from tmpud.simulators.carla.traffic import Traffic
 from tmpud.simulators.cars import standing_at
+from tmpud.simulators.conventions import DT
 
 PATIENCE = 20.0  # [s] simulated, that the ego waits for room
 

@@ -11,10 +11,11 @@ import numpy as np
 
 from tmpud.errors import SimulatorError
 from tmpud.geometry import Pose
-from tmpud.roads.carla_coordinates import KMH, to_steer
+from tmpud.roads.carla_coordinates import KMH, to_point, to_steer
 from tmpud.simulators.carla.pedals import Pedals
 from tmpud.simulators.carla.reader import box_of
-from tmpud.simulators.carla.server import DT, ROLE, Server, above
+from tmpud.simulators.carla.server import ROLE, Server, above
+from tmpud.simulators.conventions import DT
 
 MODEL = "vehicle.tesla.model3"
 SETTLING = 20  # steps until a car that was put on the road stands
@@ -71,7 +72,7 @@ class Ego:
         place, velocity = actor.get_transform(), actor.get_velocity()
         yaw = math.radians(place.rotation.yaw)
         self._speed = velocity.x * math.cos(yaw) + velocity.y * math.sin(yaw)
-        self.place = place.location.x, -place.location.y
+        self.place = to_point(place.location.x, place.location.y)
 
     def contacts(self, frame: int) -> list[tuple[int, int]]:
         """Return (frame, other actor) of each actor that was touched for the first time, up to a frame.

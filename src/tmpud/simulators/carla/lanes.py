@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator
+from functools import partial
 
 import numpy as np
 
@@ -63,23 +64,13 @@ class LaneFinder:
         return np.where(there, beside + PER_RADIAN * askew, np.inf)
 
 
-class _Elevation:
-    """How high a centre line is at a station [m]."""
-
-    def __init__(self, stations: Sequence[float], heights: Sequence[float]) -> None:
-        self._stations, self._heights = stations, heights
-
-    def __call__(self, station: float) -> float:
-        return float(np.interp(station, self._stations, self._heights))
-
-
-def _centre_lines(network: RoadNetwork) -> Iterator[tuple[str, Polyline, _Elevation]]:
+def _centre_lines(network: RoadNetwork) -> Iterator[tuple[str, Polyline, Callable[[float], np.float64]]]:
     for lane in network.lanes.values():
-        yield lane.id, lane.centre, _Elevation(lane.centre.stations, lane.elevation)
+        yield lane.id, lane.centre, partial(np.interp, xp=lane.centre.stations, fp=lane.elevation)
     for way in network.connections:
         ends = [network.lanes[way.from_lane].elevation[-1], network.lanes[way.to_lane].elevation[0]]
         if way.internal_lanes and way.path.length > 0.0:
-            yield way.internal_lanes[0], way.path, _Elevation([0.0, way.path.length], ends)
+            yield way.internal_lanes[0], way.path, partial(np.interp, xp=[0.0, way.path.length], fp=ends)
 
 
 def _cell(x: float, y: float) -> tuple[int, int]:

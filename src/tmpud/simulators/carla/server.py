@@ -11,8 +11,8 @@ import carla
 from tmpud.errors import SimulatorError
 from tmpud.geometry import Point, Pose
 from tmpud.roads.carla_coordinates import from_pose
+from tmpud.simulators.conventions import DT
 
-DT = 0.05  # [s] of one step
 CONNECTED = 2.5  # [s] in which a server says its version
 LOADING = 60.0  # [s] in which a server loads a map
 LIFT = 0.5  # [m] a car is put so much above the road, and falls onto it

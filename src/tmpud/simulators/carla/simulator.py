@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from types import TracebackType
-from typing import Any, Self
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,15 +17,14 @@ from tmpud.simulators.carla.lanes import LaneFinder
 from tmpud.simulators.carla.messages import COLUMNS, Message
 from tmpud.simulators.carla.session import LOADED, Address, Session
 from tmpud.simulators.carla.signals import Signals
-from tmpud.simulators.cars import SENSING_RANGE
-from tmpud.simulators.sumo_reader import DT, EGO_ID
+from tmpud.simulators.conventions import DT, EGO_ID, SENSING_RANGE, Closing
 from tmpud.simulators.traffic import TrafficRules
 
 WARM_UP = 30.0  # [s] simulated
 CHUNK = 20  # steps between two signs of life while the traffic warms up; all take less than three slow ones
 
 
-class CarlaSimulator:
+class CarlaSimulator(Closing):
     """One town with circulating traffic, on a map of the server's that is called like the network."""
 
     def __init__(
@@ -37,7 +35,6 @@ class CarlaSimulator:
         seed: int,
         server: Address | None = None,
         warm_up: float = WARM_UP,
-        rules: TrafficRules | None = None,
     ) -> None:
         """Load the map anew and let ``traffic`` vehicles circulate for ``warm_up`` simulated seconds."""
         self._network, self._finder, self._signals = network, LaneFinder(network), Signals(network)
@@ -48,7 +45,7 @@ class CarlaSimulator:
         self._shift = np.zeros(COLUMNS)  # from the server's coordinates to the network's
         self._shift[:2] = network.frame.offset
         self.contacts: list[tuple[float, str]] = []  # what the collision sensor told, once for each other
-        rules = rules or TrafficRules()
+        rules = TrafficRules()
         self._session = Session(server or Address())
         words = {"speed": rules.wished_speed, "spread": rules.spread, "min_gap": rules.min_gap}
         try:
@@ -111,14 +108,6 @@ class CarlaSimulator:
     def close(self) -> None:
         """Leave the server as it was found; a second call does nothing."""
         self._session.close()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
 
     # Inside ----------------------------------------------------------------------------------------------------
 

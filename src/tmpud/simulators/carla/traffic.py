@@ -13,9 +13,9 @@ from tmpud.errors import SimulatorError
 from tmpud.geometry import Point, Pose
 from tmpud.roads.carla_coordinates import KMH, to_point
 from tmpud.simulators.carla.server import ROLE, Server, above
+from tmpud.simulators.conventions import SENSING_RANGE
 
 ROOM = 10.0  # [m] around a spawn point where a car appears
-SENSING_RANGE = 80.0  # [m] no car appears in the ego's sight
 
 
 class Traffic:
@@ -71,7 +71,7 @@ class Traffic:
         free = []
         for point in points:
             place = to_point(point.location.x, point.location.y)
-            seen = ego is not None and math.dist(place, ego) < SENSING_RANGE
+            seen = ego is not None and math.dist(place, ego) < SENSING_RANGE  # no car appears in the ego's sight
             if not seen and all(math.dist(place, other) > ROOM for other in taken):
                 free.append(point)
                 taken.append(place)

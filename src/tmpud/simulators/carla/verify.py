@@ -19,7 +19,7 @@ from tmpud.simulators.carla.maps import fetch
 from tmpud.simulators.carla.session import CLOSED, Address, Session
 from tmpud.simulators.carla.signals import DARK
 from tmpud.simulators.carla.simulator import CarlaSimulator
-from tmpud.simulators.sumo_reader import DT
+from tmpud.simulators.conventions import DT
 
 STATION = 15.0  # [m] of the longest lane, where the ego is tried
 AHEAD = 15.0  # [m] before the ego a car is parked to be hit
