@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from tmpud.errors import NoPlanError
-from tmpud.events import Event
+from tmpud.events import Estimated, Event, Planned
 from tmpud.execution.abstract import AbstractWorld, JointSample
 from tmpud.execution.baselines import communication
 from tmpud.execution.deliberation import Deliberation
@@ -22,8 +22,9 @@ from tmpud.roads.loading import load_map
 from tmpud.roads.network import RoadNetwork
 from tmpud.roads.places import request as service_request
 from tmpud.runner import STATUS
+from tmpud.safety.estimator import SafetyEstimate
 from tmpud.scene import Outcome
-from tmpud.symbols import LazyCost, ServiceRequest, Transition
+from tmpud.symbols import Action, LazyCost, ServiceRequest, State, TaskPlan, Transition
 from tmpud.task.domain import Domain
 from tmpud.task.search_planner import SearchPlanner
 
@@ -86,6 +87,20 @@ class AbstractTrials:
         }
 
 
+class _Silent(Deliberation):
+    """A mind whose plans and estimates nobody reads about: of an abstract trial only its end is kept."""
+
+    def planned(self, plan: TaskPlan, reason: str) -> Planned:  # noqa: ARG002
+        return _A_PLAN
+
+    def estimated(self, step: Transition, estimate: SafetyEstimate) -> Estimated:  # noqa: ARG002
+        return _AN_ESTIMATE
+
+
+_A_PLAN = Planned(0.0, 0, (), (), (), (), "")
+_AN_ESTIMATE = Estimated(0.0, Transition(State("", 0), Action.FORWARD, State("", 0)), 1.0, None, 1.0, (), (), ())
+
+
 def _way(network: RoadNetwork, preset: Preset, route: Sequence[str], seed: int) -> Way:
     start, goal = route
     request = service_request(network, start, (goal,), (), seed)
@@ -96,7 +111,7 @@ def _way(network: RoadNetwork, preset: Preset, route: Sequence[str], seed: int) 
 
 def _driven(way: Way, world: AbstractWorld, communicate: Communicate) -> str:
     """Run one trial and return its status."""
-    mind = Deliberation(way.request, way.domain, way.planner, way, world)
+    mind = _Silent(way.request, way.domain, way.planner, way, world)
     try:
         return STATUS[_last(run_tmpud(way.domain.start_state(), mind, communicate))]
     except NoPlanError:
