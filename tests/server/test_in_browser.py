@@ -89,6 +89,19 @@ def test_a_replay_plays_inside_its_page_and_what_came_since_can_be_had(tmp_path:
         assert page.locator("#newer").is_hidden()
 
 
+def test_a_run_and_another_play_in_step_inside_one_page(tmp_path: Path) -> None:
+    recorded(tmp_path / "root" / "one")
+    recorded(tmp_path / "root" / "two")
+    with served(tmp_path / "root") as server, browsing(server) as page:
+        page.click("text=root/one")
+        page.click("text=Beside another run")
+        page.click("a:has-text('root/two')")
+        replay = page.frame_locator("#frame")
+        replay.locator("#play").click()
+        replay.locator("#clock").wait_for()
+        assert replay.locator("canvas").count() >= 2
+
+
 def test_a_click_leads_from_a_point_to_its_trials_and_on_to_the_replay(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -11,6 +11,7 @@ import threading
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -53,7 +54,8 @@ def hostile_folder(root: Path) -> Path:
     for number, name in enumerate(NAMES):
         folder = root / f"{number} {file_name(name)}"
         folder.mkdir(parents=True)
-        log = json.dumps(to_json(header(start=name, goal=name, algorithm=name))) + "\n"
+        town = {"name": name, "digest": str(number // 2)}  # two and two can be compared
+        log = json.dumps(to_json(replace(header(start=name, goal=name, algorithm=name), map=town))) + "\n"
         (folder / LOG).write_bytes(gzip.compress(log.encode()))
     with campaign(root / "sweep", **dict(zip(NAMES, NAMES, strict=True))) as store:
         store.append([done(TASKS[0], NAMES[0])])
@@ -84,6 +86,28 @@ def test_a_whole_run_is_shown_with_its_replay(tmp_path: Path) -> None:
         replay = server.ask(f"{link}/replay")
         assert "Content-Security-Policy" in replay.text
         assert replay.headers["Content-Security-Policy"].startswith("sandbox allow-scripts")
+
+
+def test_a_run_can_be_seen_beside_another_on_its_map(tmp_path: Path) -> None:
+    other_map = [replace(header(), map={"name": "elsewhere", "digest": "other"})]
+    recorded(tmp_path / "one")
+    recorded(tmp_path / "same", [header(algorithm="no-com")])
+    recorded(tmp_path / "busier", [header(traffic=9)])
+    recorded(tmp_path / "elsewhere", other_map)
+    with served(tmp_path) as server:
+        link, root = server.link(f"{tmp_path.name}/one"), tmp_path.name
+        listed = re.findall(r'/with/\w+"><bdi>([^<]+)</bdi></a>.*?(\(other traffic\))?</li>', server.ask(link).text)
+        assert listed == [(f"{root}/same", ""), (f"{root}/busier", "(other traffic)")]
+        pair = f"{link}/with/{server.link(f'{root}/same').removeprefix('runs/')}"
+        page = shown(server, pair)
+        assert f"{root}/one beside {root}/same" in page.text
+        assert server.ask(f"{pair}/part").status == 200
+        replay = server.ask(f"{pair}/replay")
+        assert (replay.status, "tmpud replay" in replay.text) == (200, True)
+        assert replay.headers["Content-Security-Policy"].startswith("sandbox allow-scripts")
+        stranger = server.ask(f"{link}/with/{server.link(f'{root}/elsewhere').removeprefix('runs/')}/replay")
+        assert (stranger.status, "only runs on the same map" in stranger.text) == (404, True)
+        assert {server.ask(f"{link}/with/{end}").status for end in ("x", "x/part", "x/replay", "", "../x")} == {404}
 
 
 def test_a_damaged_run_says_what_is_missing_and_a_missing_one_is_told_as_such(tmp_path: Path) -> None:
@@ -188,7 +212,7 @@ def test_hostile_names_are_text_on_every_page(tmp_path: Path) -> None:
         text = text_of(name)
         called = text_of(f"root/{number} {file_name(name)}")
         telling = [link for link, page in pages.items() if called in page.text and f"millbrook: {text} →" in page.text]
-        assert len(telling) == 2, name  # the list and the run's own page
+        assert len(telling) == 3, name  # the list, the run's own page, and that of the run it can be seen beside
         assert any(text in page.text for link, page in pages.items() if link.startswith("experiments")), name
 
 
@@ -202,9 +226,9 @@ def test_fifty_clients_on_a_run_that_grows_are_all_answered_and_leave_it_as_it_i
     answered, made = threading.Event(), []
     make = replays._make
 
-    async def counted(folder: Path) -> bytes:
-        made.append(folder)
-        return await make(folder)
+    async def counted(folders: replays.Folders) -> bytes:
+        made.append(folders)
+        return await make(folders)
 
     def write() -> None:
         with file.open("ab") as log:

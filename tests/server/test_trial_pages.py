@@ -107,6 +107,24 @@ def test_a_trial_is_driven_again_once_and_what_differs_is_said(tmp_path: Path, c
     assert {file: file.read_bytes() for file in sweep.iterdir()} == before
 
 
+def test_a_trial_can_be_seen_beside_the_same_one_by_another_algorithm(tmp_path: Path) -> None:
+    made_results(tmp_path / "sweep", replace(SHORT, algorithms=("tmpud", "no-com")))
+    with served(tmp_path) as server:
+        link = server.link(f"{tmp_path.name}/sweep")
+        row = re.findall(r"\.\./trials/(\w+)", server.ask(f"{link}/points/0").text)[0]
+        (other,) = re.findall(rf'"{row}/with/(\w+)"', server.ask(f"{link}/trials/{row}").text)
+        pair = f"{link}/trials/{row}/with/{other}"
+        assert "beside" in shown(server, pair).text
+        assert server.ask(f"{pair}/replay").status == 404
+        while 'data-shown="no"' in (part := server.ask(f"{pair}/part").text):
+            assert "driven again" in part
+            time.sleep(0.1)
+        assert part.count("driven again, it is not the same as what was kept") == 2
+        replay = server.ask(f"{pair}/replay")
+        assert (replay.status, "tmpud replay" in replay.text) == (200, True)
+        assert server.ask(f"{link}/trials/{row}/with/x").status == 404
+
+
 def test_a_trial_that_comes_out_as_it_was_kept_is_the_same(tmp_path: Path) -> None:
     trial = trial_of(read_results(made_results(tmp_path / "first", SHORT)), "few/00000/tmpud")
     kept = summary(drive_again(trial, tmp_path / "run"))

@@ -17,6 +17,7 @@ from starlette.routing import Route
 
 from tmpud.errors import TmpudError
 from tmpud.server.index import EXPERIMENT, RUN, Entry, Index, read_file
+from tmpud.server.pairs import pair_of, side_of
 from tmpud.server.rendering import Templates
 from tmpud.server.replays import replays
 from tmpud.server.security import REPLAY_POLICY, REPORT_POLICY, Guard
@@ -25,6 +26,7 @@ from tmpud.server.trial_pages import TrialPages
 
 PATIENCE = 1.0  # [s] spent on reading what is new before an answer
 LARGEST = 50_000_000  # bytes of a report
+BESIDE = 12  # runs to which one can be compared at a click
 STATIC = {"view.css": "text/css", "view.js": "text/javascript"}
 
 
@@ -37,6 +39,9 @@ def make_app(roots: Sequence[Path], port: int, token: str) -> Guard:
         Route("/list", pages.list_part),
         Route("/static/{name}", pages.static),
         Route("/runs/{id}/replay", pages.replay),
+        Route("/runs/{id}/with/{other}", pages.pair),
+        Route("/runs/{id}/with/{other}/part", pages.pair_part),
+        Route("/runs/{id}/with/{other}/replay", pages.pair_replay),
         Route("/experiments/{id}/report", pages.report),
         *TrialPages(index, templates, pages.show).routes(),
         Route("/{kind}/{id}", pages.entry),
@@ -82,10 +87,20 @@ class _Pages:
         entry = await run_in_threadpool(self._found, request, RUN)
         return await self.show(entry.folder)
 
-    async def show(self, folder: Path) -> Response:
-        """Answer with the replay of a run folder."""
+    def pair(self, request: Request) -> Response:
+        return self._templates.live_page("pair.html", self._pair(request))
+
+    def pair_part(self, request: Request) -> Response:
+        return self._templates.part(request, "pair_part.html", self._pair(request))
+
+    async def pair_replay(self, request: Request) -> Response:
+        entries = [await run_in_threadpool(self._found, request, RUN, name) for name in ("id", "other")]
+        return await self.show(*(entry.folder for entry in entries))
+
+    async def show(self, *folders: Path) -> Response:
+        """Answer with the replay of a run folder, or of two in step."""
         try:
-            page = await self._replays.of(folder)
+            page = await self._replays.of(folders)
         except TmpudError as error:
             raise HTTPException(404, str(error)) from error
         except asyncio.CancelledError:  # the server ends
@@ -99,12 +114,28 @@ class _Pages:
         return {"root": "", "part": "list", "sections": [(kind, _of(rows, kind)) for kind in (RUN, EXPERIMENT)]}
 
     def _entry(self, request: Request) -> dict[str, Any]:
-        entry = self._found(request, request.path_params["kind"])
-        summary = self._summaries.of(entry, time.monotonic() + PATIENCE)
-        return {"root": "../", "part": f"{entry.id}/part", "entry": entry, "summary": summary}
+        entry, until = self._found(request, request.path_params["kind"]), time.monotonic() + PATIENCE
+        summary = self._summaries.of(entry, until)
+        others = self._beside(entry, summary, until)
+        return {"root": "../", "part": f"{entry.id}/part", "entry": entry, "summary": summary, "others": others}
 
-    def _found(self, request: Request, kind: str) -> Entry:
-        entry = self._index.get(kind, request.path_params["id"])
+    def _beside(self, entry: Entry, summary: Summary, until: float) -> Sequence[tuple[Entry, Summary]]:
+        """Return the other runs on a run's map: those in the same traffic first, then the last changed."""
+        if not summary.town:
+            return []
+        rows = [(other, self._summaries.of(other, until)) for other in self._index.entries() if other.id != entry.id]
+        alike = [row for row in rows if row[1].town == summary.town]
+        alike.sort(key=lambda row: row[1].changed, reverse=True)
+        return sorted(alike, key=lambda row: row[1].traffic != summary.traffic)[:BESIDE]
+
+    def _pair(self, request: Request) -> dict[str, Any]:
+        entries = [self._found(request, RUN, name) for name in ("id", "other")]
+        until = time.monotonic() + PATIENCE
+        sides = [side_of(entry.id, entry.name, self._summaries.of(entry, until)) for entry in entries]
+        return pair_of("../../../", [("../../../", "All runs and experiments")], sides)
+
+    def _found(self, request: Request, kind: str, name: str = "id") -> Entry:
+        entry = self._index.get(kind, request.path_params[name])
         if entry is None:
             raise HTTPException(404, "There is no such run or experiment (any more).")
         return entry

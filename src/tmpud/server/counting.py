@@ -54,7 +54,7 @@ class Counted:
     found: Mapping[str, Row]  # by id
 
 
-def countings() -> Kept[Counted | None]:
+def countings() -> Kept[Path, Counted | None]:
     """Return what counts the trials of results folders; None of those that are not experiments of trials."""
     return Kept(KEPT, lambda folder: _count(folder), lambda folder: children.stamp(folder / RESULTS, folder / MANIFEST))
 

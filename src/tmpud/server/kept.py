@@ -6,9 +6,9 @@ import asyncio
 import time
 from collections.abc import Awaitable, Callable, Hashable
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Generic, TypeVar
 
+K = TypeVar("K", bound=Hashable)  # what names it: a folder, or several
 T = TypeVar("T")
 
 
@@ -19,23 +19,23 @@ class _Made(Generic[T]):
     begun: float  # monotonic clock
 
 
-class Kept(Generic[T]):
+class Kept(Generic[K, T]):
     """Makes one thing at a time; all who asked before it was begun get the same."""
 
-    def __init__(self, most: int, make: Callable[[Path], Awaitable[T]], stamp: Callable[[Path], Hashable]) -> None:
+    def __init__(self, most: int, make: Callable[[K], Awaitable[T]], stamp: Callable[[K], Hashable]) -> None:
         self._most, self._make, self._stamp = most, make, stamp
-        self._made: dict[Path, _Made[T]] = {}
+        self._made: dict[K, _Made[T]] = {}
         self._making = asyncio.Lock()
 
-    async def of(self, folder: Path) -> T:
-        """Return what belongs to a folder as it is now; raises what making it raises."""
+    async def of(self, name: K) -> T:
+        """Return what belongs to a name as it is now; raises what making it raises."""
         asked = time.monotonic()
         async with self._making:
-            stamp, known = self._stamp(folder), self._made.pop(folder, None)
+            stamp, known = self._stamp(name), self._made.pop(name, None)
             if known is None or (known.stamp != stamp and known.begun < asked):
                 begun = time.monotonic()
-                known = _Made(await self._make(folder), stamp, begun)
-            self._made[folder] = known  # now the last
+                known = _Made(await self._make(name), stamp, begun)
+            self._made[name] = known  # now the last
             while len(self._made) > self._most:
                 del self._made[next(iter(self._made))]
             return known.what

@@ -36,6 +36,8 @@ class Summary:
     shown: bool = True  # whether there is a page of it
     changed: str = ""  # local time
     version: str = ""  # another one when there is more to see
+    town: str = ""  # digest of a run's map, "" where it is unknown
+    traffic: str = ""  # how many vehicles, and their seed
 
 
 class Summaries:
@@ -63,7 +65,9 @@ class Summaries:
             summary = _run(log, time.time() - found.st_mtime < LIVE)
         else:
             summary = Summary(state=WRITTEN, status="being read")
-        return replace(summary, changed=_clock(found.st_mtime), version=str(found.st_size))
+        town, traffic = _where(log.first)
+        changed, version = _clock(found.st_mtime), str(found.st_size)
+        return replace(summary, changed=changed, version=version, town=town, traffic=traffic)
 
     def _experiment(self, entry: Entry) -> Summary:
         stamp = tuple(_stamps(entry.folder))
@@ -93,6 +97,13 @@ def _run(log: Log, fresh: bool) -> Summary:
         missing.append("the run has no end: it was broken off, or stands still")
     state, status = (WRITTEN, "being written") if live else (BROKEN, "no end")
     return Summary(state=state, status=status, about=about, details=seen, missing=tuple(missing))
+
+
+def _where(header: object) -> tuple[str, str]:
+    """Return which map a run is on, and what its traffic is."""
+    if not isinstance(header, Header):
+        return "", ""
+    return str(header.map.get("digest") or ""), f"{header.mission.get('traffic')} {header.mission.get('seed')}"
 
 
 def _mission(header: Header) -> str:

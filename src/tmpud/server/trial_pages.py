@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable, Sequence
-from pathlib import Path
 from typing import Any
 
 from starlette.concurrency import run_in_threadpool
@@ -17,9 +16,11 @@ from tmpud.errors import TmpudError
 from tmpud.experiments.running.tasks import digest
 from tmpud.server.counting import Counted, Row, countings
 from tmpud.server.index import EXPERIMENT, Entry, Index
-from tmpud.server.pareto import HEIGHT, WIDTH
+from tmpud.server.pairs import Side, pair_of
+from tmpud.server.pareto import HEIGHT, WIDTH, Point
 from tmpud.server.redriving import Drive, Redrives
 from tmpud.server.rendering import Templates
+from tmpud.server.summaries import BROKEN, ENDED, WRITTEN
 
 MOST = 500  # trials on a page
 SORTS: dict[str, Callable[[Row], Any]] = {
@@ -37,8 +38,8 @@ SHOWN: dict[str, Callable[[Row], bool]] = {
 
 
 class TrialPages:
-    def __init__(self, index: Index, templates: Templates, show: Callable[[Path], Any]) -> None:
-        """``show`` answers with the replay of a run folder."""
+    def __init__(self, index: Index, templates: Templates, show: Callable[..., Any]) -> None:
+        """``show`` answers with the replay of a run folder, or of two in step."""
         self._index, self._templates, self._show = index, templates, show
         self._counted, self._drives = countings(), Redrives()
 
@@ -49,6 +50,9 @@ class TrialPages:
             Route("/experiments/{id}/trials/{trial}", self.trial),
             Route("/experiments/{id}/trials/{trial}/part", self.trial_part),
             Route("/experiments/{id}/trials/{trial}/replay", self.replay),
+            Route("/experiments/{id}/trials/{trial}/with/{other}", self.pair),
+            Route("/experiments/{id}/trials/{trial}/with/{other}/part", self.pair_part),
+            Route("/experiments/{id}/trials/{trial}/with/{other}/replay", self.pair_replay),
         ]
 
     async def points(self, request: Request) -> Response:
@@ -83,9 +87,24 @@ class TrialPages:
             raise HTTPException(404, "This trial has not been driven again yet.")
         return await self._show(told["drive"].folder)
 
-    async def _trial(self, request: Request) -> dict[str, Any]:
+    async def pair(self, request: Request) -> Response:
+        return self._templates.live_page("pair.html", _pair(*await self._both(request)))
+
+    async def pair_part(self, request: Request) -> Response:
+        return self._templates.part(request, "pair_part.html", _pair(*await self._both(request)))
+
+    async def pair_replay(self, request: Request) -> Any:
+        drives = [told["drive"] for told in await self._both(request)]
+        if not all(drive.there for drive in drives):
+            raise HTTPException(404, "These trials have not both been driven again yet.")
+        return await self._show(*(drive.folder for drive in drives))
+
+    async def _both(self, request: Request) -> list[dict[str, Any]]:
+        return [await self._trial(request, name) for name in ("trial", "other")]
+
+    async def _trial(self, request: Request, name: str = "trial") -> dict[str, Any]:
         entry, counted = await self._counts(request)
-        if (row := counted.found.get(request.path_params["trial"])) is None or not row.key:
+        if (row := counted.found.get(request.path_params[name])) is None or not row.key:
             raise HTTPException(404, "There is no such trial, or it cannot be driven again.")
         drive: Drive = self._drives.of(entry.folder, row.key, digest([*row]))
         here = counted.points[row.point].condition
@@ -118,6 +137,25 @@ class TrialPages:
         if entry is None:
             raise HTTPException(404, "There is no such experiment (any more).")
         return entry
+
+
+def _pair(one: dict[str, Any], other: dict[str, Any]) -> dict[str, Any]:
+    """Return what the page of two trials is told."""
+    back = [(f"../../../../{one['entry'].id}", one["entry"].name)]
+    return pair_of("../../../../../", back, [_side(**trial) for trial in (one, other)])
+
+
+def _side(row: Row, point: Point, drive: Drive, **_: object) -> Side:
+    """Return a trial as one side, and how far it is where it is being driven again."""
+    name = f"trial {row.trial}, {point.algorithm}"
+    if drive.phase == "failed":
+        return Side(row.id, name, BROKEN, "cannot be driven again", drive.failure, shown=False)
+    about = f"{row.distance:.1f} m; {row.moments or 'nothing unsafe'}"
+    if drive.there:
+        about += "; driven again, it is not the same as what was kept" if drive.differences else ""
+        return Side(row.id, name, BROKEN if row.unsafe else ENDED, row.status, about, shown=True, version=drive.phase)
+    far = f"is driven again: {100 * drive.share:.0f} %" if drive.phase == "driving" else "will be driven again"
+    return Side(row.id, name, WRITTEN, far, about, shown=False)
 
 
 def _table(rows: Sequence[Row], asked: dict[str, str | None]) -> dict[str, Any]:
