@@ -1,26 +1,27 @@
-"""Loading a map: our reader for the first and the second time, and sumolib.
+"""Loading a map again: our reader, whose cache of large maps is empty at first, and sumolib.
 
     python -m benchmarks load --maps millbrook grid:20:2 --rounds 5
 
-All must find the same number of lanes that cars may use. The cache of large maps is empty at first.
+All must find as many lanes that cars may use, and as many ways from one of them to another. Of a map from the cache
+that is known before its lanes have courses; "with all courses" has them worked out as well.
 """
 
 from __future__ import annotations
 
 import argparse
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
-from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from benchmarks.harness import Entry, Result, field_of, need, progress, race
 from benchmarks.nets import net_file
 from benchmarks.report import shown
-from tmpud.roads import load_map
+from tmpud.roads import RoadNetwork, load_map
 
 OURS = "load_map (ours)"
+Sizes = tuple[int, int]
 CACHE = "XDG_CACHE_HOME"  # where load_map keeps large maps
 
 
@@ -33,7 +34,7 @@ def measure(asked: argparse.Namespace) -> list[Result]:
     results = []
     for name in asked.maps:
         with net_file(name) as file, empty_cache():
-            entries, skipped = field_of({OURS: ours, "sumolib": sumolib})
+            entries, skipped = field_of({OURS: ours, "with all courses (ours)": with_courses, "sumolib": sumolib})
             progress(f"load: {name}, {asked.rounds} rounds")
             first = race(entries[:1], [file], warmup=0)
             times = race(entries, [file] * asked.rounds, warmup=0)
@@ -58,7 +59,21 @@ def empty_cache() -> Iterator[None]:
 
 
 def ours() -> Entry[Path]:
-    return Entry(OURS, lambda file: lambda: len(load_map(file).lanes))
+    return Entry(OURS, lambda file: lambda: _counted(load_map(file)))
+
+
+def with_courses() -> Entry[Path]:
+    def count(file: Path) -> Sizes:
+        network = load_map(file)
+        _ = [*network.lanes.values()], [*network.connections]
+        return _counted(network)
+
+    return Entry("with all courses (ours)", lambda file: lambda: count(file))
+
+
+def _counted(network: RoadNetwork) -> Sizes:
+    """Return how many lanes there are, and how many ways lead out of them."""
+    return len(network.lanes), sum(len(network.leads_to(lane)) for lane in network.lanes)
 
 
 def sumolib() -> Entry[Path]:
@@ -66,10 +81,10 @@ def sumolib() -> Entry[Path]:
     need("sumolib")
     from sumolib.net import readNet
 
-    def count(file: Path) -> Callable[[], int]:
-        read = partial(readNet, str(file), withInternal=True)
-        return lambda: sum(
-            lane.allows("passenger") for edge in read().getEdges(withInternal=False) for lane in edge.getLanes()
-        )
+    def count(file: Path) -> Sizes:
+        edges = readNet(str(file), withInternal=True).getEdges(withInternal=False)
+        lanes = [lane for edge in edges for lane in edge.getLanes() if lane.allows("passenger")]
+        ways = (way for lane in lanes for way in lane.getOutgoing())
+        return len(lanes), sum(way.getToLane().allows("passenger") for way in ways)
 
-    return Entry("sumolib", count)
+    return Entry("sumolib", lambda file: lambda: count(file))

@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from tmpud.roads.network import RoadNetwork
-from tmpud.roads.rows import Row, from_rows, to_rows
+from tmpud.roads.rows import from_rows, to_rows
 
 LARGE = 2_000  # [lanes] smaller maps are read as quickly as a cache would be
 _CODE = Path(__file__).parent
@@ -96,20 +96,20 @@ def _keep(place: Path, network: RoadNetwork) -> None:
             written.replace(place)
 
 
-def _blocks(lines: BinaryIO, map_digest: str) -> Iterator[tuple[str, list[Row]]]:
-    """Yield the rows of a file of the cache under the names of their kinds; ValueError where it is not whole."""
+def _blocks(lines: BinaryIO, map_digest: str) -> Iterator[tuple[str, bytes]]:
+    """Yield the lines of a file of the cache under the names of their kinds; ValueError where it is not whole."""
     stamp = lines.readline()
     if json.loads(stamp) != _stamp(map_digest):
         raise ValueError("made from another map, or by other code")
     digest = hashlib.sha256(stamp)
     for line in lines:
-        kind, rows = json.loads(line)
+        kind = line[2 : line.index(b'"', 2)].decode()  # of ["kind",[...]]
         if kind == _END:
-            if rows != digest.hexdigest() or lines.read(1):
+            if json.loads(line) != [_END, digest.hexdigest()] or lines.read(1):
                 raise ValueError("not what was written")
             return
         digest.update(line)
-        yield kind, rows
+        yield kind, line
     raise ValueError("cut short")
 
 

@@ -6,7 +6,8 @@ import math
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
-from tmpud.roads.network import LaneConnection, RoadNetwork, Segment
+from tmpud.roads.graph import Segment
+from tmpud.roads.network import LaneConnection, RoadNetwork
 from tmpud.symbols import Action
 
 MERGES = (Action.MERGELEFT, Action.MERGERIGHT)

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_right
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import NamedTuple
 
 from tmpud.geometry import Point, Polyline
+from tmpud.roads.graph import Graph, Segment
 from tmpud.showing import ShownAsSvg
 from tmpud.symbols import Action
 
@@ -50,20 +52,6 @@ class Lane:
     def level(self) -> float:
         """Mean elevation [m]."""
         return sum(self.elevation) / len(self.elevation)
-
-
-class Segment(NamedTuple):
-    """The part of a lane between two stations; all lanes of a road are cut in the same number of parts."""
-
-    id: str  # "<lane>/<number>", numbered from 0 along the lane
-    lane: str
-    number: int
-    start: float  # [m] station on the lane
-    end: float  # [m]
-
-    @property
-    def middle(self) -> float:
-        return (self.start + self.end) / 2
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,13 +97,16 @@ class Frame:
     projection: str = "!"
 
 
-@dataclass(slots=True)
+@dataclass
 class RoadNetwork(ShownAsSvg):
-    """Lanes, lane segments, connections, junctions and signals of one map. Not changed after it is built."""
+    """Lanes, lane segments, connections, junctions and signals of one map. Not changed after it is built.
+
+    What can be looked up in it is worked out when it is first asked for.
+    """
 
     name: str
     lanes: Mapping[str, Lane]
-    connections: tuple[LaneConnection, ...]
+    connections: Sequence[LaneConnection]
     junctions: Mapping[str, Junction]
     signals: Mapping[str, SignalProgram]
     frame: Frame = field(default_factory=Frame)
@@ -125,36 +116,42 @@ class RoadNetwork(ShownAsSvg):
     parts: Mapping[str, str] = field(default_factory=dict)  # the source's id of a part of a lane -> the lane
     segment_length: float = SEGMENT_LENGTH  # [m] longest segment; inf: one per lane
     street_names: Mapping[str, str] = field(default_factory=dict)  # edge -> what its signs say, where it is known
-    segments: dict[str, Segment] = field(init=False)
-    edges: dict[str, tuple[str, ...]] = field(init=False)  # edge -> its lanes, rightmost first
-    internal: dict[str, int] = field(init=False)  # lane through a junction -> index of its connection
-    _cuts: dict[str, tuple[Segment, ...]] = field(init=False, repr=False)
-    _outgoing: dict[str, list[int]] = field(init=False, repr=False)
-    _incoming: dict[str, list[int]] = field(init=False, repr=False)
-    _index: dict[tuple[str, str], int] = field(init=False, repr=False)
 
-    def __post_init__(self) -> None:
-        by_edge: dict[str, list[Lane]] = {}
-        for lane in self.lanes.values():
-            by_edge.setdefault(lane.edge, []).append(lane)
-        self.edges = {
-            edge: tuple(lane.id for lane in sorted(lanes, key=lambda lane: lane.index))
-            for edge, lanes in by_edge.items()
-        }
-        self._cuts = {}
-        for lanes in by_edge.values():
-            pieces = max(1, math.ceil(max(lane.length for lane in lanes) / self.segment_length - 1e-9))
-            for lane in lanes:
-                self._cuts[lane.id] = tuple(_cut(lane, pieces))
-        self.segments = {segment.id: segment for cut in self._cuts.values() for segment in cut}
-        self._outgoing = {lane: [] for lane in self.lanes}
-        self._incoming = {lane: [] for lane in self.lanes}
-        self.internal, self._index = {}, {}
-        for index, connection in enumerate(self.connections):
-            self._outgoing[connection.from_lane].append(index)
-            self._incoming[connection.to_lane].append(index)
-            self._index[connection.from_lane, connection.to_lane] = index
-            self.internal.update(dict.fromkeys(connection.internal_lanes, index))
+    @cached_property
+    def graph(self) -> Graph:
+        """How the lanes hang together."""
+        return Graph.of(self.lanes, self.connections)
+
+    @cached_property
+    def edges(self) -> dict[str, tuple[str, ...]]:
+        """The lanes of each edge, rightmost first."""
+        return self.graph.by_edge()
+
+    @cached_property
+    def segments(self) -> dict[str, Segment]:
+        """All segments by their ids."""
+        return {segment.id: segment for cut in self._cuts.values() for segment in cut}
+
+    @cached_property
+    def internal(self) -> dict[str, int]:
+        """The index of the connection to which a lane through a junction belongs."""
+        return {lane: index for index, way in enumerate(self.connections) for lane in way.internal_lanes}
+
+    @cached_property
+    def _cuts(self) -> dict[str, tuple[Segment, ...]]:
+        return self.graph.cut(self.edges, self.segment_length)
+
+    @cached_property
+    def _outgoing(self) -> dict[str, list[int]]:
+        return self.graph.ways_at(self.graph.starts)
+
+    @cached_property
+    def _incoming(self) -> dict[str, list[int]]:
+        return self.graph.ways_at(self.graph.ends)
+
+    @cached_property
+    def _index(self) -> dict[tuple[str, str], int]:
+        return {ends: index for index, ends in enumerate(self.graph.ways())}
 
     def segments_of(self, lane: str) -> tuple[Segment, ...]:
         """Return a lane's segments in driving order."""
@@ -232,6 +229,10 @@ class RoadNetwork(ShownAsSvg):
         """Return the connections that start at a lane's end."""
         return [self.connections[index] for index in self._outgoing[lane]]
 
+    def leads_to(self, lane: str) -> list[str]:
+        """Return the lanes to which a lane leads."""
+        return [self.graph.lanes[self.graph.ends[index]] for index in self._outgoing[lane]]
+
     def incoming(self, lane: str) -> list[LaneConnection]:
         """Return the connections that end at a lane's start."""
         return [self.connections[index] for index in self._incoming[lane]]
@@ -244,9 +245,3 @@ class RoadNetwork(ShownAsSvg):
         """Return the lane nearest to a point, the station on it and the offset to its left [m]."""
         found = ((lane, *lane.centre.project(x, y)) for lane in self.lanes.values())
         return min(found, key=lambda hit: (abs(hit[2]), hit[0].id))
-
-
-def _cut(lane: Lane, pieces: int) -> Iterable[Segment]:
-    for number in range(pieces):
-        start, end = lane.length * number / pieces, lane.length * (number + 1) / pieces
-        yield Segment(f"{lane.id}/{number}", lane.id, number, start, end)

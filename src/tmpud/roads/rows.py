@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import fields
 from functools import partial
 from itertools import islice
@@ -11,12 +11,12 @@ from pathlib import Path
 from typing import Any
 
 from tmpud.geometry import Point, Polyline
+from tmpud.roads.graph import Graph
+from tmpud.roads.late import BLOCK, Block, Late, Named, Row, rows_of
 from tmpud.roads.network import WHOLE, Frame, Junction, Lane, LaneConnection, RoadNetwork, SignalProgram, Stretch
 from tmpud.symbols import Action
 
-_BLOCK = 1_000  # [rows] that are handed over at a time
-
-Row = list[Any]
+_KINDS = "map", "graph", "lanes", "connections", "junctions", "signals", "parts"
 
 
 def map_name(path: Path) -> str:
@@ -26,20 +26,19 @@ def map_name(path: Path) -> str:
 
 def to_rows(network: RoadNetwork) -> Iterator[tuple[str, list[Row]]]:
     """Yield a network in the types of JSON, some rows at a time; connections name lanes by their number."""
-    number = {lane: i for i, lane in enumerate(network.lanes)}
+    graph = network.graph
     yield "map", [[network.digest, _values(network.frame), network.warnings, network.street_names]]
-    kinds = {
+    yield "graph", [_values(graph)]
+    ends = zip(graph.starts, graph.ends, network.connections, strict=True)
+    kinds: dict[str, Iterator[Row]] = {
         "lanes": map(_lane_row, network.lanes.values()),
-        "connections": (
-            _values(each, from_lane=number[each.from_lane], to_lane=number[each.to_lane], path=each.path.points)
-            for each in network.connections
-        ),
+        "connections": (_values(way, from_lane=start, to_lane=end, path=way.path.points) for start, end, way in ends),
         "junctions": map(_values, network.junctions.values()),
         "signals": map(_values, network.signals.values()),
         "parts": map(list, network.parts.items()),
     }
     for kind, rows in kinds.items():
-        while block := list(islice(rows, _BLOCK)):
+        while block := list(islice(rows, BLOCK)):
             yield kind, block
 
 
@@ -47,28 +46,30 @@ def _values(item: Any, **instead: Any) -> Row:
     return [instead.get(field.name, getattr(item, field.name)) for field in fields(item)]
 
 
-def from_rows(blocks: Iterable[tuple[str, list[Row]]], file: Path, segment_length: float) -> RoadNetwork:
-    ids: list[str] = []
-    make: dict[str, Callable[..., Any]] = {**_MADE, "connections": partial(_connection, ids)}
-    found: dict[str, list[Any]] = {kind: [] for kind in make}
-    for kind, rows in blocks:
-        found[kind] += [make[kind](*row) for row in rows]
-        ids += [row[0] for row in rows if kind == "lanes"]
-    ((digest, (offset, projection), warnings, street_names),) = found["map"]
-    return RoadNetwork(
+def from_rows(blocks: Iterable[tuple[str, Block]], file: Path, segment_length: float) -> RoadNetwork:
+    """Return the network; its lanes and connections become objects when they are first asked for."""
+    found: dict[str, list[Block]] = {kind: [] for kind in _KINDS}
+    for kind, block in blocks:
+        found[kind].append(block)
+    ((digest, (offset, projection), warnings, street_names),) = rows_of(found["map"][0])
+    graph = Graph(*rows_of(found["graph"][0])[0])
+    connections = Late(found["connections"], len(graph.starts), partial(_connection, graph.lanes))
+    network = RoadNetwork(
         name=map_name(file),
-        lanes={lane.id: lane for lane in found["lanes"]},
-        connections=tuple(found["connections"]),
-        junctions={junction.id: junction for junction in found["junctions"]},
-        signals={signal.id: signal for signal in found["signals"]},
+        lanes=Named(graph.lanes, Late(found["lanes"], len(graph.lanes), _lane)),
+        connections=connections,
+        junctions={row[0]: _junction(*row) for block in found["junctions"] for row in rows_of(block)},
+        signals={row[0]: _signal(*row) for block in found["signals"] for row in rows_of(block)},
         frame=Frame((offset[0], offset[1]), projection),
         source=str(file),
         digest=digest,
         warnings=tuple(warnings),
-        parts=dict(found["parts"]),
+        parts={part: lane for block in found["parts"] for part, lane in rows_of(block)},
         segment_length=segment_length,
         street_names=street_names,
     )
+    network.graph = graph
+    return network
 
 
 def _lane_row(lane: Lane) -> Row:
@@ -96,7 +97,9 @@ def _stretches(row: Row | None) -> tuple[Stretch, ...]:
     return tuple(Stretch(start, math.inf if end is None else end) for start, end in row)
 
 
-def _connection(ids: Row, start: int, end: int, action: str, junction: str, path: Row, *others: Any) -> LaneConnection:
+def _connection(
+    ids: Sequence[str], start: int, end: int, action: str, junction: str, path: Row, *others: Any
+) -> LaneConnection:
     internal, signal, link, priority, turnaround, yields_to, foes = others
     return LaneConnection(
         ids[start],
@@ -124,12 +127,3 @@ def _signal(name: str, offset: float, phases: Row, lights: Row) -> SignalProgram
 
 def _points(row: Row) -> tuple[Point, ...]:
     return tuple((x, y) for x, y in row)
-
-
-_MADE: dict[str, Callable[..., Any]] = {
-    "map": lambda *row: row,
-    "lanes": _lane,
-    "junctions": _junction,
-    "signals": _signal,
-    "parts": lambda *row: row,
-}

@@ -143,8 +143,8 @@ class SumoSimulator(Simulation):
     def _onward(self, lane: str, roads: int = 2) -> list[str]:
         """Return some lanes that follow a lane: SUMO takes away a vehicle that comes to the end of its route."""
         found: list[str] = []
-        while len(found) < roads and (ways := self._network.outgoing(lane)):
-            lane = ways[0].to_lane
+        while len(found) < roads and (following := self._network.leads_to(lane)):
+            lane = following[0]
             found.append(lane)
         return found
 
