@@ -174,7 +174,9 @@ def _six(value: float) -> float | str:
 
 
 def _tuples(value: Any) -> Any:
-    return tuple(_tuples(item) for item in value) if isinstance(value, list) else value
+    if not isinstance(value, list):
+        return value
+    return tuple([_tuples(item) if isinstance(item, list) else item for item in value])  # a log holds millions
 
 
 def _transition(row: list[Any]) -> Transition:

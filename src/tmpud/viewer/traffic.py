@@ -6,7 +6,8 @@ Of positions [cm] the second differences are kept, of headings [mrad], speeds [c
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from itertools import pairwise
+from itertools import chain
+from operator import sub
 from typing import Any
 
 from tmpud.events import Frame
@@ -20,7 +21,7 @@ def sound(frame: Frame) -> bool:
     rows = (frame.ego, *frame.others)
     named = len(frame.ids) == len(frame.others) == len(set(frame.ids)) and all(isinstance(i, str) for i in frame.ids)
     lit = all(isinstance(text, str) for text in (*frame.signals, *frame.signals.values()))
-    return named and lit and 0 <= frame.time < MOST / 1000 and all(map(_whole, rows))
+    return named and lit and 0 <= frame.time < MOST / 1000 and _whole(rows)
 
 
 def columns(frames: Sequence[Frame]) -> dict[str, Any]:
@@ -35,7 +36,7 @@ def columns(frames: Sequence[Frame]) -> dict[str, Any]:
 
 def differences(values: Sequence[int]) -> list[int]:
     """Return the first value and then each one's difference to the one before it."""
-    return [*values[:1], *(after - before for before, after in pairwise(values))]
+    return [*values[:1], *map(sub, values[1:], values)]
 
 
 def _track(rows: Sequence[Row], *, speed: bool) -> list[list[int]]:
@@ -69,5 +70,7 @@ def _lights(frames: Iterable[Frame]) -> dict[str, list[list[Any]]]:
     return switched
 
 
-def _whole(row: Any) -> bool:
-    return len(row) == 4 and all(type(value) is int and abs(value) < MOST for value in row)
+def _whole(rows: Sequence[Any]) -> bool:
+    """Whether each row is four whole numbers."""
+    values = [*chain.from_iterable(rows)]
+    return {*map(len, rows)} == {4} and {*map(type, values)} == {int} and -MOST < min(values) <= max(values) < MOST
