@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
-from itertools import chain, compress
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
@@ -95,14 +95,16 @@ class Vehicles:
         """The bodies as nine arrays (N,)."""
         if not self._columns:
             flat = np.array([*chain.from_iterable(self.bodies)], dtype=np.float64)
-            self._columns.append(tuple(flat.reshape(len(self.bodies), len(Body._fields)).T.copy()))
+            table = flat.reshape(len(self.bodies), len(Body._fields)).T.copy()
+            table.flags.writeable = False  # the bodies would not change with it
+            self._columns.append(tuple(table))
         return self._columns[0]
 
     def take(self, keep: NDArray[np.bool_]) -> Vehicles:
         """Return the vehicles at which ``keep`` (N,) is true."""
-        kept = keep.tolist()
-        lanes, bodies = compress(self.lanes, kept), compress(self.bodies, kept)
-        return Vehicles(tuple(compress(self.ids, kept)), tuple(lanes), tuple(bodies))
+        index = np.flatnonzero(keep).tolist()
+        ids, lanes = (tuple(names[i] for i in index) for names in (self.ids, self.lanes))
+        return Vehicles(ids, lanes, [self.bodies[i] for i in index])
 
     @classmethod
     def of(cls, states: Sequence[VehicleState]) -> Vehicles:

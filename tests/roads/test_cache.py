@@ -48,6 +48,16 @@ def test_the_network_is_the_same_read_from_the_cache(folder: Path) -> None:
     assert uncut == read_sumo_net(town, segment_length=1e9)
 
 
+def test_a_network_of_many_blocks_is_the_same_from_the_cache(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for module in ("late", "rows"):
+        monkeypatch.setattr(f"tmpud.roads.{module}.BLOCK", 7)
+    town, reader = map_file("millbrook"), Reader()
+    first, again = (read_cached(town, 60.0, reader, folder, 0) for _ in range(2))
+    assert reader.times == 1
+    assert [again.outgoing(lane) for lane in again.lanes] == [first.outgoing(lane) for lane in first.lanes]
+    assert again == first
+
+
 def test_the_streets_keep_their_names(net: Path, folder: Path) -> None:
     net.write_text(CROSSING.replace('<edge id="in"', '<edge id="in" name="Mill Street"'))
     for _ in range(2):

@@ -129,6 +129,11 @@ def test_a_scene_that_is_not_finite_is_refused() -> None:
             estimate(bad)
 
 
+def test_a_scene_too_large_for_an_index_is_refused_and_never_called_safe() -> None:
+    with pytest.raises(InvalidStateError, match="so large"):
+        estimate(scene(car(5, 0, speed=1e160)))
+
+
 def test_ranges_that_are_none_are_refused() -> None:
     for preset in (
         replace(TMPUD, turning_range=(0.1, 0.1)),

@@ -1,7 +1,7 @@
 """Large maps that were read before, kept in the user's cache folder by content, so that reading them again is quick.
 
-A file of the cache is lines of JSON: what it was made from and by which code; the network, some rows at a time, so
-that a city's are never all in memory beside what they become; a digest of all that. One that is damaged, or another
+A file of the cache is lines of JSON: what it was made from and by which code; the network, some rows at a time; a
+digest of all that. A line stays as it is until what it holds is asked for. A file that is damaged, or another
 version's, is as good as none. ``TMPUD_NO_CACHE=1`` keeps none.
 """
 
@@ -15,6 +15,7 @@ import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from functools import cache
+from itertools import chain
 from pathlib import Path
 from typing import BinaryIO
 
@@ -88,7 +89,7 @@ def _keep(place: Path, network: RoadNetwork) -> None:
             written = Path(folder) / place.name
             with written.open("wb") as file:
                 digest = hashlib.sha256()
-                for block in (_stamp(place.stem), *to_rows(network)):
+                for block in chain([_stamp(place.stem)], to_rows(network)):
                     line = json.dumps(block, separators=(",", ":"), allow_nan=False).encode() + b"\n"
                     digest.update(line)
                     file.write(line)
@@ -120,5 +121,5 @@ def _stamp(map_digest: str) -> dict[str, str]:
 @cache
 def _code_digest() -> str:
     """Return what changes with the code that reads maps."""
-    files = [*sorted(_CODE.rglob("*.py")), _CODE.parent / "geometry.py"]
+    files = [*sorted(_CODE.rglob("*.py")), _CODE.parent / "geometry.py", _CODE.parent / "symbols.py"]
     return hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from operator import eq
 from typing import Any, TypeVar, overload
 
 BLOCK = 1_000  # [rows]; all blocks but the last have so many
@@ -35,11 +36,13 @@ class Late(Sequence[T]):
     def __getitem__(self, place: int | slice) -> T | Sequence[T]:
         if isinstance(place, slice):
             return [self[i] for i in range(*place.indices(self._count))]
-        number, at = divmod(place if place >= 0 else place + self._count, BLOCK)
+        number, at = divmod(range(self._count)[place], BLOCK)
         return (self._made[number] or self._block(number))[at]
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Sequence) and len(self) == len(other) and all(map(_equal, self, other))
+        if not isinstance(other, Sequence):
+            return NotImplemented
+        return len(self) == len(other) and all(map(eq, self, other))
 
     __hash__ = None  # type: ignore[assignment]
 
@@ -47,13 +50,11 @@ class Late(Sequence[T]):
         return repr(tuple(self))
 
     def _block(self, number: int) -> list[T]:
-        self._made[number] = made = [self._make(*row) for row in rows_of(self._blocks[number])]
-        self._blocks[number] = []
-        return made
-
-
-def _equal(one: object, other: object) -> bool:
-    return one == other
+        block = self._blocks[number]
+        if block:  # else another thread has just made it
+            self._made[number] = [self._make(*row) for row in rows_of(block)]
+            self._blocks[number] = []
+        return self._made[number]
 
 
 class Named(Mapping[str, T]):
@@ -61,7 +62,7 @@ class Named(Mapping[str, T]):
 
     def __init__(self, names: Sequence[str], items: Late[T]) -> None:
         self._places, self._items = {name: place for place, name in enumerate(names)}, items
-        self._made: dict[str, T] = {}
+        self._made: dict[str, T] = {}  # what was asked for, found in one step
 
     def __getitem__(self, name: str) -> T:
         made = self._made.get(name)

@@ -18,15 +18,18 @@ def run_tool(
 ) -> subprocess.CompletedProcess[bytes]:
     """Run ``netconvert``, ``netgenerate``, ... with some options.
 
-    Raises MapError where it is not installed, CalledProcessError (with ``check``) where it fails, and TimeoutExpired
-    after ``timeout`` seconds.
+    Raises MapError where it is not installed or, with ``check``, fails, and TimeoutExpired after ``timeout`` seconds.
     """
     command = [_binary(name), *(f"--{option}={value}" for option, value in options.items())]
     # an empty SUMO_HOME is none, but SUMO's programs do not survive it
     environment = {key: value for key, value in os.environ.items() if value or key != "SUMO_HOME"}
-    return subprocess.run(  # noqa: S603
-        command, stdin=subprocess.DEVNULL, capture_output=True, timeout=timeout, check=check, env=environment
+    done = subprocess.run(  # noqa: S603
+        command, stdin=subprocess.DEVNULL, capture_output=True, timeout=timeout, check=False, env=environment
     )
+    if check and done.returncode:
+        said = done.stderr.decode(errors="replace").strip().rpartition("\n")[2]
+        raise MapError(name, None, f"failed with exit code {done.returncode}: {said}")
+    return done
 
 
 def _binary(name: str) -> str:

@@ -34,6 +34,11 @@ class SafetyIndex:
     by_acceleration: FloatArray  # [m^2/s per m/s^2] c_a
     by_yaw_rate: FloatArray  # [m^2/s per rad/s] c_w
 
+    @property
+    def defined(self) -> bool:
+        """Whether there is no NaN in it, as finite states leave only where they are too large to be squared."""
+        return not bool(np.isnan(self.phi + self.drift + self.by_acceleration + self.by_yaw_rate).any())
+
     def rate(self, acceleration: FloatArray, yaw_rate: FloatArray) -> FloatArray:
         """Return phi' (N, T) under the controls of T instants."""
         return self.drift + self.by_acceleration * acceleration + self.by_yaw_rate * yaw_rate

@@ -69,7 +69,10 @@ class SafeSetEstimator:
     ) -> SafetyEstimate:
         # Lines 4 and 8: for each vehicle V_i, all in one array
         # Line 5
-        index = control_set.safety_index(ego, others, predicted, self._preset)
+        with np.errstate(over="ignore", invalid="ignore"):
+            index = control_set.safety_index(ego, others, predicted, self._preset)
+        if not index.defined:
+            raise InvalidStateError("the scene holds places or speeds so large that there is no safety index")
         # Line 6
         sets, o = self._share(index, ego, rng)
         # Line 7

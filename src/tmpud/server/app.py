@@ -66,7 +66,8 @@ class _Pages:
         return self._templates.part(request, "list_part.html", self._list())
 
     def entry(self, request: Request) -> Response:
-        return self._templates.live_page("entry.html", self._entry(request))
+        told = self._entry(request)
+        return self._templates.live_page("entry.html", {**told, "others": self._beside(told["entry"], told["summary"])})
 
     def entry_part(self, request: Request) -> Response:
         return self._templates.part(request, "entry_part.html", self._entry(request))
@@ -114,16 +115,17 @@ class _Pages:
         return {"root": "", "part": "list", "sections": [(kind, _of(rows, kind)) for kind in (RUN, EXPERIMENT)]}
 
     def _entry(self, request: Request) -> dict[str, Any]:
-        entry, until = self._found(request, request.path_params["kind"]), time.monotonic() + PATIENCE
-        summary = self._summaries.of(entry, until)
-        others = self._beside(entry, summary, until)
-        return {"root": "../", "part": f"{entry.id}/part", "entry": entry, "summary": summary, "others": others}
+        entry = self._found(request, request.path_params["kind"])
+        summary = self._summaries.of(entry, time.monotonic() + PATIENCE)
+        return {"root": "../", "part": f"{entry.id}/part", "entry": entry, "summary": summary}
 
-    def _beside(self, entry: Entry, summary: Summary, until: float) -> Sequence[tuple[Entry, Summary]]:
+    def _beside(self, entry: Entry, summary: Summary) -> Sequence[tuple[Entry, Summary]]:
         """Return the other runs on a run's map: those in the same traffic first, then the last changed."""
         if not summary.town:
             return []
-        rows = [(other, self._summaries.of(other, until)) for other in self._index.entries() if other.id != entry.id]
+        until = time.monotonic() + PATIENCE
+        runs = [other for other in self._index.entries() if other.kind == RUN and other.id != entry.id]
+        rows = [(other, self._summaries.of(other, until)) for other in runs]
         alike = [row for row in rows if row[1].town == summary.town]
         alike.sort(key=lambda row: row[1].changed, reverse=True)
         return sorted(alike, key=lambda row: row[1].traffic != summary.traffic)[:BESIDE]

@@ -13,7 +13,6 @@ from tmpud.server.kept import Kept
 
 KEPT = 8  # pages
 
-
 Folders = tuple[Path, ...]  # of one run, or of two to be compared
 
 

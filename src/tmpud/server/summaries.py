@@ -101,7 +101,7 @@ def _run(log: Log, fresh: bool) -> Summary:
 
 def _where(header: object) -> tuple[str, str]:
     """Return which map a run is on, and what its traffic is."""
-    if not isinstance(header, Header):
+    if not isinstance(header, Header) or not isinstance(header.map, dict):
         return "", ""
     return str(header.map.get("digest") or ""), f"{header.mission.get('traffic')} {header.mission.get('seed')}"
 

@@ -100,6 +100,11 @@ class TrialPages:
         return await self._show(*(drive.folder for drive in drives))
 
     async def _both(self, request: Request) -> list[dict[str, Any]]:
+        """Return the same trial as two algorithms drove it."""
+        _, counted = await self._counts(request)
+        one, other = (counted.found.get(request.path_params[name]) for name in ("trial", "other"))
+        if one is None or other is None or other not in (row for _, row in _same_trial(counted, one)):
+            raise HTTPException(404, "There are no such two trials of the same traffic.")
         return [await self._trial(request, name) for name in ("trial", "other")]
 
     async def _trial(self, request: Request, name: str = "trial") -> dict[str, Any]:
@@ -107,12 +112,7 @@ class TrialPages:
         if (row := counted.found.get(request.path_params[name])) is None or not row.key:
             raise HTTPException(404, "There is no such trial, or it cannot be driven again.")
         drive: Drive = self._drives.of(entry.folder, row.key, digest([*row]))
-        here = counted.points[row.point].condition
-        others = [
-            (counted.points[other.point].algorithm, other)
-            for other in counted.rows
-            if other.trial == row.trial and counted.points[other.point].condition == here and other.key
-        ]
+        others = _same_trial(counted, row)
         told = {"entry": entry, "point": counted.points[row.point], "row": row, "drive": drive, "others": others}
         return {"root": "../../../", "part": f"{row.id}/part", **told}
 
@@ -137,6 +137,16 @@ class TrialPages:
         if entry is None:
             raise HTTPException(404, "There is no such experiment (any more).")
         return entry
+
+
+def _same_trial(counted: Counted, row: Row) -> list[tuple[str, Row]]:
+    """Return a trial as each algorithm drove it, itself included."""
+    here = counted.points[row.point].condition
+    return [
+        (counted.points[other.point].algorithm, other)
+        for other in counted.rows
+        if other.trial == row.trial and counted.points[other.point].condition == here and other.key
+    ]
 
 
 def _pair(one: dict[str, Any], other: dict[str, Any]) -> dict[str, Any]:
