@@ -1,6 +1,7 @@
 /** One line over the scene: what the car is doing, and what has just happened. */
 
 import { badge, el, metres } from "./elements";
+import { blamed, kindOf } from "./judged";
 import { planColour } from "./palette";
 import { ACTIONS } from "./plan";
 import { kmh } from "./transport";
@@ -42,7 +43,7 @@ function told({ run, time }: View): [string, number] {
   const fresh = (then: number) => time - then >= -0.5 && time - then < FRESH;
   const judged = doc.judged.find((event) => fresh(event.time));
   if (doc.finished && time >= doc.finished.time - 0.5) return [`the end: ${doc.finished.status}`, number];
-  if (judged) return [`judged: ${judged.kind.replace("_", " ")}, blame: ${judged.blame}`, number];
+  if (judged) return [`judged: ${kindOf(judged)}, ${blamed(judged)}`, number];
   if (!plan) return ["no plan", number];
   const change = doc.changes.find((one) => one.plan === number);
   if (change && fresh(plan.time)) return [`takes the place of plan ${doc.plans[number - 1].name}: ${change.headline}`, number];

@@ -2,6 +2,7 @@
 
 import type { Comparison, Document, Side } from "./document";
 import { badge, el, metres } from "./elements";
+import { blamed, kindOf } from "./judged";
 import { planColour } from "./palette";
 import { named, panel } from "./panel";
 import { ACTIONS, where } from "./plan";
@@ -42,7 +43,7 @@ function choices(stage: Stage): HTMLElement {
 
 function results(views: View[]): HTMLElement {
   const unsafe = ({ judged }: Document) =>
-    judged.length ? `${judged.length}: ${judged.map((event) => `${event.kind.replace("_", " ")} (blame: ${event.blame})`).join(", ")}` : "none";
+    judged.length ? `${judged.length}: ${judged.map((event) => `${kindOf(event)} (${blamed(event)})`).join(", ")}` : "none";
   const rows: [string, (view: View) => string][] = [
     ["how it ended", ({ run }) => run.doc.finished?.status ?? "no end is recorded"],
     ["unsafe", ({ run }) => unsafe(run.doc)],

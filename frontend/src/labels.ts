@@ -1,11 +1,14 @@
 /** What is written over the scene, in pixels. */
 
+import { blamed, kindOf } from "./judged";
 import type { Look } from "./look";
 import type { Theme } from "./palette";
 import type { Pose } from "./run";
 import type { View } from "./view";
 
 export const SHOWN_FOR = 4000; // [ms] around an event in which the scene points at it
+
+const LINE = 16; // [px] between two texts, at least
 
 /** A plan's letter on its way. */
 export interface Letter {
@@ -15,6 +18,8 @@ export interface Letter {
 }
 
 export class Labels {
+  private readonly taken: { x: number; y: number; width: number }[] = []; // by texts
+
   constructor(
     private readonly ctx: CanvasRenderingContext2D,
     private readonly view: View,
@@ -24,6 +29,7 @@ export class Labels {
   draw(ego: Pose | null, look: Look | null, paths: [number, number][][], letters: Letter[]): void {
     const { run, time } = this.view;
     this.ctx.lineWidth = 2;
+    this.scaleBar();
     this.ends(paths, ego);
     for (const { place, name, colour } of letters) this.disc(place, name, colour);
     if (ego) {
@@ -40,10 +46,9 @@ export class Labels {
         this.ring(where, this.colours.risk);
         const ahead = judged.time - time;
         const when = ahead > 50 ? `in ${(ahead / 1000).toFixed(1)} s: ` : "";
-        this.tag(where, `${when}${judged.kind.replace("_", " ")} (blame: ${judged.blame})`, this.colours.risk, this.colours.paper);
+        this.tag(where, `${when}${kindOf(judged)} (${blamed(judged)})`, this.colours.risk, this.colours.paper);
       }
     }
-    this.scaleBar();
   }
 
   /** Above the other run's car, since our own one's name is below it. */
@@ -122,9 +127,11 @@ export class Labels {
     this.words(text, px + above * 0.7, py - above, ink, paper);
   }
 
+  /** Above what is written there already, and wholly inside the scene if a part of it is. */
   private words(text: string, px: number, py: number, ink: string, paper: string): void {
     const { ctx } = this;
     ctx.font = "600 12px system-ui, sans-serif";
+    [px, py] = this.room(px, py, ctx.measureText(text).width);
     ctx.strokeStyle = paper;
     ctx.lineWidth = 4;
     ctx.lineJoin = "round";
@@ -132,6 +139,16 @@ export class Labels {
     ctx.lineWidth = 2;
     ctx.fillStyle = ink;
     ctx.fillText(text, px, py);
+  }
+
+  private room(px: number, py: number, width: number): [number, number] {
+    const edge = this.view.camera.width;
+    const x = px > -width && px < edge ? Math.max(4, Math.min(px, edge - width - 4)) : px;
+    const hit = (y: number) => this.taken.find((box) => Math.abs(box.y - y) < LINE - 1 && x < box.x + box.width && box.x < x + width);
+    let y = py;
+    for (let box = hit(y); box; box = hit(y)) y = box.y - LINE;
+    this.taken.push({ x, y, width });
+    return [x, y];
   }
 
   private scaleBar(): void {

@@ -2,6 +2,7 @@
 
 import { badge, el, metres } from "./elements";
 import { why } from "./explanation";
+import { blamed, kindOf } from "./judged";
 import { planColour } from "./palette";
 import { keys, legend, planInForce, repeat } from "./plan";
 import { safety } from "./safety";
@@ -45,8 +46,8 @@ function summary(view: View): HTMLElement {
     ? `The car drove ${metres(finished.distance)} in ${run.clock(finished.time)} ${ENDINGS.get(finished.status) ?? `(${finished.status})`}.`
     : "The record has no end.";
   const safety = judged.length ? `Unsafe moments judged: ${judged.length}.` : "Nothing unsafe was judged.";
-  const said = changes.length ? `It changed its plan ${times}.` : "It kept its first plan.";
-  const words = [drive, finished?.message ? `${finished.message}.` : "", said, safety].join(" ");
+  const said = changes.length ? `It changed its plan ${times}.` : run.doc.plans.length ? "It kept its first plan." : "";
+  const words = [drive, finished?.message ? `${finished.message}.` : "", said, safety].filter((text) => text).join(" ");
   const heading = view.name === null ? el("h1", {}, run.route((place) => named(view, place))) : null;
   return el("section", { id: "summary" }, heading, el("p", {}, words));
 }
@@ -79,15 +80,21 @@ function changes(view: View): HTMLElement {
     });
   });
   const how = "Before each action the car estimates how safe it would be, as Safe from 0 to 1, and looks for the cheapest plan anew: metres of road and a penalty for what is not safe.";
-  const none = el("p", {}, run.doc.changes.length ? how : "The first plan was driven to its end.");
+  const none = el("p", {}, run.doc.changes.length ? how : unchanged(view));
   return el("section", { id: "changes" }, el("h2", {}, "Why the plan changed"), none, list);
+}
+
+function unchanged({ run }: View): string {
+  const { finished, plans } = run.doc;
+  if (!plans.length) return "There was no plan.";
+  return finished?.status === "SUCCESS" ? "It did not: the first plan was driven to its end." : "It did not: the first plan was in force to the last.";
 }
 
 function unsafe(view: View): HTMLElement | null {
   const { judged } = view.run.doc;
   if (!judged.length) return null;
   const rows = judged.map((event) => {
-    const who = [event.kind.replace("_", " "), event.vehicle ?? "", `(blame: ${event.blame}, ${event.rule})`].join(" ");
+    const who = [kindOf(event), event.vehicle ?? "", `(${blamed(event)}, rule: ${event.rule})`].join(" ");
     const open = () => view.goTo(event.time);
     return el(
       "li",

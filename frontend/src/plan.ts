@@ -96,7 +96,8 @@ export function keys(): HTMLElement {
 
 export function repeat({ run }: View): HTMLElement {
   const { mission, versions } = run.doc;
-  const told = Object.entries(mission).filter(([, value]) => value !== null && String(value) !== "");
+  const weighed = (key: string) => key !== "beta" || mission.algorithm === "threshold"; // nothing else looks at it
+  const told = Object.entries(mission).filter(([key, value]) => weighed(key) && value !== null && String(value) !== "");
   const items = [...told, ...Object.entries(versions)].flatMap(([key, value]) => [
     el("dt", {}, key),
     el("dd", {}, String(value)),

@@ -33,6 +33,12 @@ def test_a_change_names_the_action_its_safe_and_the_vehicle() -> None:
     assert all(part in words for part in ("Plan A", "plan B", "merge left", "park1e_0", "Safe = 0.50", "car1"))
 
 
+def test_the_road_has_the_name_that_people_use_where_it_has_one() -> None:
+    (change,) = changes(decision(), TMPUD, {"park1e_0": "Park Street"}.__getitem__)
+    assert change.words[0] == "Plan A was to merge left now, on Park Street."
+    assert explained().words[0] == "Plan A was to merge left now, on park1e_0."
+
+
 def test_both_plans_stand_in_the_table_with_their_terms_before_and_after() -> None:
     old, new = role(explained(), "given up"), role(explained(), "chosen")
     assert (old.plan, new.plan) == (MERGE_NOW, MERGE_LATER)

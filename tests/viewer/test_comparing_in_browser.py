@@ -44,7 +44,7 @@ CAPTIONS = ("#moment", "#moment-2")
 
 def test_the_panel_tells_how_they_differ_and_where_they_parted(page: Page) -> None:
     assert "SUCCESS\tCOLLISION" in page.inner_text("#results")
-    assert "collision (blame: ego)" in page.inner_text("#results")
+    assert "collision (blame: our car)" in page.inner_text("#results")
     parting = page.inner_text("#parting")
     assert "tmpud chose to go straight on, no-com chose to merge left" in parting
     assert "Safe of merge left\t0.50, counts as" in parting
@@ -54,6 +54,34 @@ def test_the_panel_tells_how_they_differ_and_where_they_parted(page: Page) -> No
     page.locator(".scrub").fill("3000")
     page.click("text=Go there")
     assert clock(page) == 0.0
+
+
+def test_what_is_written_at_one_place_stands_one_above_the_other_and_inside(page: Page) -> None:
+    page.evaluate(LISTEN)
+    page.click("text=Overlaid")
+    page.click("text=Town")
+    picture(page)
+    texts = page.evaluate("Object.entries(written)")
+    words = " ".join(text for text, _ in texts)
+    assert all(part in words for part in ("tmpud", "no-com (ghost)", "limits Safe"))
+    width = page.evaluate("document.querySelector('#scene').clientWidth")
+    assert all(x >= 0 and x + length <= width for _, (x, _, length) in texts)
+    for number, (_, (x, y, length)) in enumerate(texts):
+        for _, (left, top, other) in texts[:number]:
+            assert abs(y - top) >= 12 or x + length <= left or left + other <= x
+
+
+# Keeps where each label of a picture was written, the scale bar's first: x, y and width [px]
+LISTEN = """() => {
+    const brush = CanvasRenderingContext2D.prototype, write = brush.strokeText;
+    window.written = {};
+    brush.strokeText = function (text, x, y) {
+        if (/^\\d+ m$/.test(text)) window.written = {};
+        if (this.font.startsWith("600 12px") && this.canvas.id === "scene")
+            window.written[text] = [x, y, this.measureText(text).width];
+        return write.call(this, text, x, y);
+    };
+}"""
 
 
 def test_overlaid_the_other_car_is_a_ghost_and_each_can_be_the_one_looked_at(page: Page) -> None:

@@ -7,7 +7,7 @@ from playwright.sync_api import Page
 
 from tests.viewer.browsing import clock, opened, picture
 from tests.viewer.hostile import NAMES
-from tests.viewer.made_runs import SHARES, decision, events, frame, header, recorded
+from tests.viewer.made_runs import SHARES, decision, events, frame, header, merging, recorded
 from tmpud.events import Estimated, Event
 from tmpud.viewer.replay import write_replay
 
@@ -63,7 +63,7 @@ def test_keys_step_and_the_strip_scrubs(page: Page) -> None:
 def test_a_click_on_a_change_explains_it_and_shows_the_plans_to_choose_from(page: Page) -> None:
     page.click(".flag.replan")
     why = page.inner_text(".why")
-    assert "Plan A was to merge left now" in why
+    assert "Plan A was to merge left now, on Park Street." in why
     assert "It would have kept plan A if" in why
     assert page.locator(".why tbody tr").count() == 2
     assert page.inner_text(".why tr.chosen").startswith("B")
@@ -75,7 +75,16 @@ def test_a_click_on_a_change_explains_it_and_shows_the_plans_to_choose_from(page
 def test_an_unsafe_moment_opens_a_second_before(page: Page) -> None:
     page.click(".flag.unsafe")
     assert clock(page) == 2.0
-    assert "forced stop car2 (blame: ego, merge)" in page.inner_text("#unsafe")
+    assert "forced stop car2 (blame: our car, rule: merge)" in page.inner_text("#unsafe")
+
+
+def test_a_plan_that_was_kept_until_a_collision_was_not_driven_to_its_end(tmp_path: Path) -> None:
+    write_replay(recorded(tmp_path / "run", merging()), tmp_path / "replay.html")
+    with opened(tmp_path / "replay.html") as page:
+        assert "the first plan was in force to the last" in page.inner_text("#changes")
+        page.click("text=This run")
+        assert "traffic" in page.inner_text("#panel")
+        assert "beta" not in page.inner_text("#panel")  # which no-com does not look at
 
 
 def test_the_plan_moves_on_with_the_drive(page: Page) -> None:

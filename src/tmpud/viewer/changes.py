@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 
 from tmpud.events import Estimated, Event, Executed, Planned, Refused
 from tmpud.presets import Preset
@@ -11,9 +11,9 @@ from tmpud.viewer.memory import Memory
 from tmpud.viewer.reasons import Change, Situation, explain
 
 
-def changes(events: Iterable[Event], preset: Preset) -> Iterator[Change]:
-    """Yield an explanation of every plan but the first one."""
-    watch = _Watch(preset)
+def changes(events: Iterable[Event], preset: Preset, street_of: Callable[[str], str] = str) -> Iterator[Change]:
+    """Yield an explanation of every plan but the first one; ``street_of`` says what a lane's road is called."""
+    watch = _Watch(preset, street_of)
     for event in events:
         match event:
             case Planned():
@@ -29,8 +29,8 @@ def changes(events: Iterable[Event], preset: Preset) -> Iterator[Change]:
 class _Watch:
     """The plan that is being driven, and what was learnt of its next action."""
 
-    def __init__(self, preset: Preset) -> None:
-        self._memory = Memory(preset)
+    def __init__(self, preset: Preset, street_of: Callable[[str], str]) -> None:
+        self._memory, self._street_of = Memory(preset), street_of
         self._plan: Planned | None = None
         self._number = -1
         self._driven = 0  # actions of the plan
@@ -58,4 +58,6 @@ class _Watch:
         done, rest = old.plan[: self._driven], old.plan[self._driven :]
         estimate = self._estimate if rest and self._estimate and self._estimate.step == rest[0] else None
         listed: tuple[TaskPlan, ...] = tuple(plan for plan, _, _ in old.alternatives)
-        return Situation(self._number, new, done, rest, listed, estimate, self.refused, self._memory, self._old_safe)
+        road = self._street_of(self.refused.step.state.segment.rpartition("/")[0]) if self.refused else ""
+        known = (estimate, self.refused, self._memory, self._old_safe)
+        return Situation(self._number, new, done, rest, road, listed, *known)

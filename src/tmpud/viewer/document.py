@@ -7,11 +7,12 @@ plans are metres, coefficients of safe control sets SI units.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 from tmpud.dynamics import EGO
 from tmpud.events import Estimated, Executed, Finished, Judged, Planned
+from tmpud.roads.network import RoadNetwork
 from tmpud.story import plan_name
 from tmpud.symbols import TaskPlan, Transition
 from tmpud.viewer.changes import changes
@@ -45,7 +46,7 @@ def replay_document(run: Intact) -> dict[str, Any]:
         "estimates": [_estimated(event, steps) for event in run.events if isinstance(event, Estimated)],
         "executed": [_executed(event) for event in run.events if isinstance(event, Executed)],
         "judged": [_judged(event) for event in run.events if isinstance(event, Judged)],
-        "changes": [_change(change, steps) for change in _changes(run)],
+        "changes": [_change(change, steps) for change in _changes(run, network)],
         "finished": next((_finished(event) for event in run.events if isinstance(event, Finished)), None),
     }
     return {**document, "steps": steps.rows, "missing": run.missing}
@@ -69,12 +70,19 @@ class _Steps:
         return [self(step) for step in plan]
 
 
-def _changes(run: Intact) -> list[Change]:
+def _changes(run: Intact, network: RoadNetwork | None) -> list[Change]:
     try:
-        return list(changes(run.events, preset_of(run.header.mission["settings"])))
+        preset = preset_of(run.header.mission["settings"])
+        return list(changes(run.events, preset, _street_in(network)))
     except (KeyError, TypeError, ValueError) as error:
         run.missing.append(f"changes of plan cannot be explained: the header's settings cannot be read ({error!r})")
         return []
+
+
+def _street_in(network: RoadNetwork | None) -> Callable[[str], str]:
+    """Return what says the street of a lane, or the lane itself where it has no name."""
+    lanes, names = (network.lanes, network.street_names) if network else ({}, {})
+    return lambda lane: (names.get(lanes[lane].edge) if lane in lanes else None) or lane
 
 
 def _controls(run: Intact) -> dict[str, Any] | None:

@@ -56,6 +56,7 @@ class Situation:
     new: Planned
     done: TaskPlan  # what was driven of the old plan ...
     rest: TaskPlan  # ... and what was left of it
+    road: str  # on which the refused action begins, as people call it
     listed: tuple[TaskPlan, ...]  # the plans listed beside the old one
     estimate: Estimated | None  # of the first action left
     refused: Refused | None
@@ -107,7 +108,7 @@ def _candidate(case: Situation, plan: TaskPlan) -> Candidate:
 def _estimated(case: Situation) -> Iterator[str]:
     assert case.refused is not None  # noqa: S101 - told by the caller
     infinitive, gerund = WORDS[case.refused.step.action]
-    yield f"Plan {plan_name(case.number - 1)} was to {infinitive} now, on {_road(case.refused.step)}."
+    yield f"Plan {plan_name(case.number - 1)} was to {infinitive} now, on {case.road}."
     risk = case.estimate.worst if case.estimate else None
     who = f" The vehicle that limits it most is {risk}, marked on the map." if risk else ""
     yield (
@@ -164,7 +165,3 @@ def _other(case: Situation) -> tuple[str, ...]:
     if case.forbidden:
         return (f"No path does the next action of plan {name} from where the car stood: {reason}.",)
     return (f"Plan {name} was given up: {reason}.",)
-
-
-def _road(step: Transition) -> str:
-    return step.state.segment.rpartition("/")[0]
