@@ -71,6 +71,16 @@ def test_the_list_follows_a_campaign_and_a_run(tmp_path: Path) -> None:
         page.wait_for_selector("text=SUCCESS")
 
 
+def test_a_narrow_window_shows_all_that_the_list_says(tmp_path: Path) -> None:
+    recorded(tmp_path / "root" / "run")
+    with served(tmp_path / "root") as server, browsing(server) as page:
+        page.set_viewport_size({"width": 390, "height": 844})
+        told = page.locator("tbody td")
+        assert told.count() == 4
+        assert told.evaluate_all("cells => cells.map(cell => cell.getBoundingClientRect().right <= 390)") == [True] * 4
+        assert page.evaluate("document.documentElement.scrollWidth") <= 390
+
+
 def test_a_replay_plays_inside_its_page_and_what_came_since_can_be_had(tmp_path: Path) -> None:
     data = (recorded(tmp_path / "made") / LOG).read_bytes()
     (tmp_path / "root" / "run").mkdir(parents=True)

@@ -19,7 +19,7 @@ import pytest
 
 from tests.server.asking import Served, Shown, served
 from tests.viewer.hostile import NAMES
-from tests.viewer.made_runs import header, recorded
+from tests.viewer.made_runs import header, merging, recorded
 from tmpud.events import to_json
 from tmpud.experiments.running.manifest import Experiment
 from tmpud.experiments.running.store import LOCK, Store
@@ -86,6 +86,15 @@ def test_a_whole_run_is_shown_with_its_replay(tmp_path: Path) -> None:
         replay = server.ask(f"{link}/replay")
         assert "Content-Security-Policy" in replay.text
         assert replay.headers["Content-Security-Policy"].startswith("sandbox allow-scripts")
+
+
+def test_two_thresholds_are_told_apart(tmp_path: Path) -> None:
+    for beta in (0.1, 0.5):
+        recorded(tmp_path / "runs" / f"b{beta}", merging(algorithm="threshold", beta=beta))
+    with served(tmp_path / "runs") as server:
+        text = shown(server, "").text
+    assert "threshold(0.1), 2 vehicles" in text
+    assert "threshold(0.5), 2 vehicles" in text
 
 
 def test_a_run_can_be_seen_beside_another_on_its_map(tmp_path: Path) -> None:

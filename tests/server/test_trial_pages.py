@@ -148,6 +148,7 @@ def test_abstract_trials_are_listed_and_have_no_replay(tmp_path: Path) -> None:
         page = server.ask(f"{link}/points/0")
         assert "no traffic that a replay could show" in page.text
         assert trials_of(page.text) == []
+        assert "Seed" not in page.text
         assert page.text.count("1 × merge collision") == 2
         assert "the paper&#39;s TMPUD" in points(server, f"{tmp_path.name}/figure")
 

@@ -109,7 +109,8 @@ def _where(header: object) -> tuple[str, str]:
 def _mission(header: Header) -> str:
     mission = header.mission
     places = [mission.get("start"), *(mission.get("via") or ()), mission.get("goal")]
-    driver = f"{mission.get('algorithm')}, {mission.get('traffic')} vehicles, seed {mission.get('seed')}"
+    beta = f"({mission.get('beta')})" if mission.get("algorithm") == "threshold" else ""
+    driver = f"{mission.get('algorithm')}{beta}, {mission.get('traffic')} vehicles, seed {mission.get('seed')}"
     return f"{mission.get('map')}: {' → '.join(map(str, places))}; {driver}"
 
 
