@@ -445,6 +445,11 @@ def test_runs_of_two_maps_are_not_compared(tmp_path: Path, tmpud: Tmpud) -> None
     assert not (folders[0] / "compare.html").exists()
 
 
+def test_a_replay_of_an_experiment_says_how_its_trials_are_replayed(tmp_path: Path, tmpud: Tmpud) -> None:
+    (tmp_path / "results.jsonl").touch()
+    assert "--trial KEY" in tmpud("replay", str(tmp_path)).refusal
+
+
 @pytest.mark.parametrize("given", [".", "letter.txt"])
 def test_a_replay_of_no_run_is_refused(tmp_path: Path, tmpud: Tmpud, given: str) -> None:
     (tmp_path / "letter.txt").write_text("no run", encoding="utf-8")

@@ -89,6 +89,12 @@ def test_a_run_that_is_not_there_is_named(tmp_path: Path) -> None:
         list(read_run(tmp_path / "none"))
 
 
+def test_a_log_named_instead_of_its_folder_is_told_apart(tmp_path: Path) -> None:
+    recorded(tmp_path / "run")
+    with pytest.raises(RunFileError, match=r"named by its folder, .*/run$"):
+        list(read_run(tmp_path / "run" / LOG))
+
+
 LINES = [json.dumps(to_json(event)) for event in EVENTS]
 
 

@@ -61,11 +61,18 @@ def read_run(folder: str | Path) -> Iterator[Event]:
                 read += 1
                 yield event
     except (FileNotFoundError, NotADirectoryError) as error:
-        raise RunFileError(f"{path}: no such run; a run folder holds {LOG}") from error
+        raise RunFileError(no_run(path)) from error
     except (OSError, EOFError, ValueError, zlib.error, RunFileError) as error:
         raise RunFileError(f"{path}:{read + 1}: {error}") from error
     if not read:
         raise RunFileError(f"{path}:1: the file is empty")
+
+
+def no_run(path: Path) -> str:
+    """Say that a log is not there, and how the folder is called where its log was named instead."""
+    if path.parent.name == LOG and path.parent.is_file():
+        return f"{path.parent}: a run is named by its folder, {path.parent.parent}"
+    return f"{path}: no such run; a run folder holds {LOG}"
 
 
 def _line(row: dict[str, object]) -> bytes:

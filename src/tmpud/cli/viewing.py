@@ -37,12 +37,24 @@ def replay(
     films.check()
     if trial:
         run = _driven_again(run, trial)
+    else:
+        _refuse_experiment(run)
     if films:
         from tmpud.viewer.intact import read_intact
 
         write_films(read_intact(run), films, cutting)
     if html or other or not films:
         _write_page(run, other, html)
+
+
+def _refuse_experiment(folder: Path) -> None:
+    from tmpud.errors import RequestError
+    from tmpud.experiments.running.store import RESULTS
+    from tmpud.recording import LOG
+
+    if (folder / RESULTS).is_file() and not (folder / LOG).exists():
+        ways = f"tmpud view {folder} shows it, and --trial KEY replays one of its trials"
+        raise RequestError(f"{folder} holds an experiment, not a run: {ways}")
 
 
 def _write_page(run: Path, other: Path | None, html: Path | None) -> None:

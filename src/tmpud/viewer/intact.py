@@ -13,7 +13,7 @@ from typing import Any
 
 from tmpud.errors import RunFileError
 from tmpud.events import Estimated, Event, Executed, Finished, Frame, Header, Judged, Planned, Refused, from_json
-from tmpud.recording import LOG
+from tmpud.recording import LOG, no_run
 from tmpud.symbols import TaskPlan, Transition
 from tmpud.viewer import traffic
 
@@ -70,7 +70,7 @@ def _events(path: Path, damaged: list[str], cut: list[int]) -> Iterator[Event]:
                 else:
                     yield event
     except (FileNotFoundError, NotADirectoryError) as error:
-        raise RunFileError(f"{path}: no such run; a run folder holds {LOG}") from error
+        raise RunFileError(no_run(path)) from error
     except EOFError:
         cut.append(number)
     except (OSError, zlib.error) as error:
