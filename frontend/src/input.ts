@@ -10,6 +10,7 @@ const WHEEL = 0.0015; // zoom for each pixel scrolled
 export const KEYS: [string, string][] = [
   ["space", "play, pause"],
   ["← →", "a frame back, on (with shift: a second)"],
+  ["Home End", "the start, the end"],
   [", .", "slower, faster"],
   ["n p", "next, previous change of plan"],
   ["+ −", "zoom (or wheel, or two fingers)"],
