@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 
 from tests.carla_loopback.running import loopback
 from tmpud.cli import app
-from tmpud.errors import SimulatorError
+from tmpud.errors import SimulatorError, SimulatorHangError
 from tmpud.events import Finished, Header
 from tmpud.experiments.trials.carla import CarlaTrials
 from tmpud.experiments.trials.grid import Grid, Route, cells
@@ -90,6 +90,19 @@ def test_a_trial_of_an_experiment_is_the_drive_with_its_options(blocks_xodr: Pat
         server.arm(die_at=1)
         with pytest.raises(SimulatorError):
             work.run(work.prepare(cell.task.shared), cell.task.arguments)
+
+
+@pytest.mark.parametrize(("status", "error"), [("SIM_CRASH", SimulatorError), ("SIM_HANG", SimulatorHangError)])
+def test_a_trial_that_a_server_ends_is_a_fault_of_that_name(
+    status: str, error: type[SimulatorError], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ended = Finished(1.0, status, "no answer", 0.0, 1.0, 0, {"forced_stops": 0, "violations": 0})
+    monkeypatch.setattr("tmpud.experiments.trials.carla.drive", lambda *_, **__: [ended])
+    (cell,) = cells(replace(GRID, missions=("paper",), server="127.0.0.1:1"))
+    work = CarlaTrials()
+    with pytest.raises(error, match="no answer") as raised:
+        work.run(work.prepare(cell.task.shared), cell.task.arguments)
+    assert raised.type is error
 
 
 def test_on_a_net_that_is_shifted_against_the_servers_map_all_is_where_the_net_has_it(
