@@ -58,7 +58,7 @@ USED = {
     "repeat": ("repeats", "traffic"),
     "carla-repeat": ("repeats", "traffic"),
     "carla-left": ("kills",),
-    "carla-missions": ("missions",),
+    "carla-missions": ("carla_missions",),
     "figure4": ("figure_trials",),
     "calibration": (),
     "same-results": ("same_trials",),

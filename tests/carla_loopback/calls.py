@@ -19,7 +19,7 @@ class Calls:
 
     def __init__(self, town: Town, stream_port: int, tick: Callable[[], None]) -> None:
         self._town, self._port, self._tick = town, stream_port, tick
-        self._traffic_managers: dict[int, tuple[str, int]] = {}
+        self.traffic_managers: dict[int, tuple[str, int]] = {}  # by their ports
 
     def answer(self, name: str, arguments: list[Any]) -> Any:
         """Return the reply; an unknown call or actor is an error that names it."""
@@ -149,16 +149,16 @@ class Calls:
         return wire.value([[body.id, 0] for body in self._town.vehicles()])
 
     def on_is_traffic_manager_running(self, port: int) -> Any:
-        return wire.value(port in self._traffic_managers)
+        return wire.value(port in self.traffic_managers)
 
     def on_get_traffic_manager_running(self, port: int) -> Any:
-        return wire.value(self._traffic_managers.get(port, ("", 0)))
+        return wire.value(self.traffic_managers.get(port, ("", 0)))
 
     def on_add_traffic_manager_running(self, where: list[Any]) -> Any:
         host, port = where
-        new = port not in self._traffic_managers
-        self._traffic_managers[port] = (host, port)
+        new = port not in self.traffic_managers
+        self.traffic_managers[port] = (host, port)
         return wire.value(new)
 
     def on_destroy_traffic_manager(self, port: int) -> Any:
-        return wire.value(self._traffic_managers.pop(port, None) is not None)
+        return wire.value(self.traffic_managers.pop(port, None) is not None)

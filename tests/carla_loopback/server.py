@@ -75,7 +75,8 @@ class Server:
 
     def _reply(self, name: str, arguments: list[Any]) -> Any:
         if name == "loopback_report":
-            return self.town.report() | {"journal": dict(self.journal), "order": self.order}
+            managers = sorted(self._calls.traffic_managers)
+            return self.town.report() | {"journal": dict(self.journal), "order": self.order, "managers": managers}
         if name == "loopback_arm":
             for fault, value in arguments[0].items():
                 setattr(self.town.faults, fault, value + self.town.frame if fault.endswith("_at") else value)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from dataclasses import replace
 from pathlib import Path
 
@@ -47,6 +48,23 @@ def test_a_trials_mission_is_what_its_task_drives() -> None:
         map="millbrook", start="park1e_0", goal="high4n", via=("park2e_1",), algorithm="threshold", beta=0.1,
         traffic=120, seed=7,
     )  # fmt: skip
+
+
+def test_a_trial_on_a_carla_server_is_not_driven_again_but_the_command_that_does_is_told(tmp_path: Path) -> None:
+    grid = Grid(
+        missions=(Route("park1e_0", "high4n", ("park2e_1",)),), algorithms=("threshold(0.1)",), seeds=(7,),
+        traffic={"few": 3}, server="10.0.0.7:2000",
+    )  # fmt: skip
+    folder = made_results(tmp_path / "sweep", grid)
+    with pytest.raises(RequestError, match=r"driven on the CARLA server 10\.0\.0\.7:2000") as told:
+        trial_of(read_results(folder), "few/00000/threshold(0.1)")
+    words = shlex.split(str(told.value).partition(": ")[2])
+    assert words[:2] == ["tmpud", "drive"]
+    given = dict(word.removeprefix("--").split("=") for word in words[2:])
+    assert given == {
+        "sim": "carla", "host": "10.0.0.7", "port": "2000", "map": "millbrook", "from": "park1e_0", "to": "high4n",
+        "via": "park2e_1", "traffic": "3", "seed": "7", "preset": "tmpud", "algorithm": "threshold", "beta": "0.1",
+    }  # fmt: skip
 
 
 def test_each_difference_is_named_with_both_values(tmp_path: Path) -> None:

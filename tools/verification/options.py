@@ -17,6 +17,7 @@ class Options:
 
     given_maps: tuple[str, ...] = ()  # net files of the user's
     missions: int = 20  # per map and algorithm
+    carla_missions: int = 10  # per density
     repeats: int = 10
     graphs: int = 10_000  # a fifth as many under rules
     cases: int = 10_000

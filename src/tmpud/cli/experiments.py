@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace
+from functools import partial
 from pathlib import Path
 from textwrap import indent
 from typing import TYPE_CHECKING, Annotated, Any
@@ -12,15 +13,18 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from tmpud.cli.options import TOWN, Jobs, Json, Map, Running, Setting, Sim, Simulated, grouped
-from tmpud.cli.running import run_tasks
+from tmpud.cli.running import PATIENCE, run_tasks
 
 if TYPE_CHECKING:
     from tmpud.experiments.kinds import Findings
     from tmpud.experiments.running.tasks import Task
+    from tmpud.experiments.trials.grid import Grid
 
 app = typer.Typer()
 paper_app = typer.Typer(help="Repeat the paper's experiments.", no_args_is_help=True)
 app.add_typer(paper_app, name="paper")
+
+ON_A_SERVER = 4 * 3600.0  # [s] for a trial: 1,800 simulated seconds at 5 steps a second take two hours
 
 SWEEP = """\
 maps: [millbrook]
@@ -43,17 +47,12 @@ def table1(
     running: Running,
 ) -> None:
     """Repeat Table I in full simulation. Five algorithms, normal and heavy traffic, paired seeds."""
-    from tmpud.cli.simulating import address, map_of
-    from tmpud.experiments.trials.grid import cells
+    from tmpud.cli.simulating import map_of, server_of
     from tmpud.experiments.trials.table1 import Table1
 
-    asked = Table1(**asdict(setting), trials=trials, first_seed=first_seed)
-    name = "table1"
-    if where.sim is Sim.CARLA:  # one server drives one trial at a time
-        name, running = "table1-carla", replace(running, jobs=1)
-        asked = replace(asked, map=map_of(where, setting.map), server=str(address(where)))
-    grid = asked.grid()
-    _experiment(name, grid.to_json(), [cell.task for cell in cells(grid)], running)
+    drawn = replace(setting, map=map_of(where, setting.map))
+    asked = Table1(**asdict(drawn), trials=trials, first_seed=first_seed, server=server_of(where))
+    _of_grid("table1", asked.grid(), where, running)
 
 
 @paper_app.command()
@@ -137,14 +136,14 @@ def learn_world(
 @grouped
 def sweep(
     file: Annotated[Path, typer.Argument(metavar="FILE.yaml", help="What is driven, as below.")],
+    where: Simulated,
     running: Running,
 ) -> None:
     """Drive any grid of missions and settings. A file says which; its trials are driven, counted and compared."""
-    from tmpud.experiments.trials.grid import cells
+    from tmpud.cli.simulating import map_of, server_of
     from tmpud.experiments.trials.sweep import read_sweep
 
-    grid = read_sweep(file)
-    _experiment("sweep", grid.to_json(), [cell.task for cell in cells(grid)], running)
+    _of_grid("sweep", read_sweep(file, server_of(where), partial(map_of, where)), where, running)
 
 
 @app.command()
@@ -171,13 +170,26 @@ def results(
         _tell(found, as_json=as_json)
 
 
-def _experiment(name: str, options: Mapping[str, Any], tasks: Sequence[Task], running: Running) -> None:
+def _of_grid(name: str, grid: Grid, where: Simulated, running: Running) -> None:
+    """Run a grid of trials. A CARLA server drives one at a time, as slowly as it may: each of its steps is watched."""
+    from tmpud.experiments.trials.grid import cells
+
+    tasks = [cell.task for cell in cells(grid)]
+    if where.sim is Sim.SUMO:
+        _experiment(name, grid.to_json(), tasks, running)
+    else:
+        _experiment(f"{name}-carla", grid.to_json(), tasks, replace(running, jobs=1), patience=ON_A_SERVER)
+
+
+def _experiment(
+    name: str, options: Mapping[str, Any], tasks: Sequence[Task], running: Running, *, patience: float = PATIENCE
+) -> None:
     """Run what is left of an experiment of trials, write its report, and say what came out."""
     from tmpud.experiments.kinds import findings
     from tmpud.experiments.reports.document import write_report
     from tmpud.experiments.reports.export import write_rows
 
-    folder, results = run_tasks(name, options, tasks, running.out, jobs=running.jobs)
+    folder, results = run_tasks(name, options, tasks, running.out, jobs=running.jobs, patience=patience)
     found = findings(results)
     write_rows(found.rows, folder / "trials.csv")
     files = write_report(folder, found.report())

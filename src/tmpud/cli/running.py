@@ -14,9 +14,17 @@ if TYPE_CHECKING:
     from tmpud.experiments.running.store import Results
     from tmpud.experiments.running.tasks import Task
 
+PATIENCE = 600.0  # [s] wall clock, then a task hangs
+
 
 def run_tasks(
-    name: str, options: Mapping[str, Any], tasks: Sequence[Task], out: Path | None, *, jobs: int
+    name: str,
+    options: Mapping[str, Any],
+    tasks: Sequence[Task],
+    out: Path | None,
+    *,
+    jobs: int,
+    patience: float = PATIENCE,
 ) -> tuple[Path, Results]:
     """Run what is left of an experiment; return its folder and all that the folder holds then."""
     from tmpud.experiments.running.campaign import run_campaign
@@ -29,7 +37,8 @@ def run_tasks(
     folder = out or Path("results") / f"{name}-{digest(options)[:8]}"
     typer.echo(f"{name}: {len(tasks)} tasks, {jobs} at a time, into {folder}", err=True)
     experiment = Experiment(name=name, options=options, command=_command())
-    for _ in run_campaign(folder, experiment, tasks, limits=Limits(jobs=jobs), progress=Progress(name, len(tasks))):
+    limits = Limits(jobs=jobs, task=patience)
+    for _ in run_campaign(folder, experiment, tasks, limits=limits, progress=Progress(name, len(tasks))):
         pass
     return folder, read_results(folder)
 

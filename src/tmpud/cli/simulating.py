@@ -24,6 +24,11 @@ def address(where: Simulated) -> Address:
     return Address(host=where.host, port=where.port)
 
 
+def server_of(where: Simulated) -> str:
+    """Return the name of the CARLA server that is asked for, "" where SUMO drives."""
+    return "" if where.sim is Sim.SUMO else str(address(where))
+
+
 def map_of(where: Simulated, name: str) -> str:
     """Return the map that a name stands for: with CARLA a file of what the server has by that name."""
     from tmpud.simulators.carla.maps import fetch

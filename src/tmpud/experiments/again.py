@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shlex
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -43,8 +44,28 @@ def trial_of(results: Results, key: str) -> Trial:
     known = {record.key: record for record in results.records}
     for cell in cells(results.manifest["options"]):
         if cell.task.key == key and key in known and known[key].digest == cell.task.digest:
+            _refuse_a_server(cell.task)
             return Trial(mission_of(cell.task), known[key])
     raise RequestError(f"no trial {key!r} has ended here; one is called {next(iter(known), 'nothing yet')}")
+
+
+def _refuse_a_server(task: Task) -> None:
+    """Raise RequestError for a trial on a CARLA server: nobody's map is replaced because somebody opened a page."""
+    if server := task.shared.get("server"):
+        raise RequestError(
+            f"it was driven on the CARLA server {server}, which would load a map for it and drop what is on it. "
+            f"Where that may be: {shlex.join(_command(task, server))}"
+        )
+
+
+def _command(task: Task, server: str) -> list[str]:
+    """Return the command that drives a trial on a server."""
+    told = {name: value for name, value in {**task.shared, **task.arguments}.items() if name != "server"}
+    host, _, port = server.rpartition(":")
+    places = {"from": told.pop("start"), "to": told.pop("goal")}
+    via = [f"--via={place}" for place in told.pop("via", ())]
+    words = {"sim": "carla", "host": host, "port": port, **places, **told}
+    return ["tmpud", "drive", *(f"--{name}={value}" for name, value in words.items()), *via]
 
 
 def mission_of(task: Task) -> Mission:

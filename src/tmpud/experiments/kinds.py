@@ -65,6 +65,7 @@ KINDS = {
     "table1-carla": Kind(
         title="Full simulation on a CARLA server: Table I",
         rows=_of_grid,
+        cells=_cells,
         reference=TABLE1,
         deviations=lambda _: CARLA_DEVIATIONS,
     ),
@@ -76,6 +77,7 @@ KINDS = {
         deviations=figure4_deviations,
     ),
     "sweep": Kind(title="A sweep in full simulation", rows=_of_grid, cells=_cells, reference={}),
+    "sweep-carla": Kind(title="A sweep on a CARLA server", rows=_of_grid, cells=_cells, reference={}),
 }
 
 

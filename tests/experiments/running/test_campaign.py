@@ -21,7 +21,7 @@ from tmpud.experiments.running.workers import Limits
 TRY = Experiment(name="try", options={"trials": 3})
 FAULTS = {
     "crash": SIM_CRASH, "exit": SIM_CRASH, "leave": SIM_CRASH, "garbage": SIM_CRASH, "simulator": SIM_CRASH,
-    "hang": SIM_HANG,
+    "hang": SIM_HANG, "still": SIM_HANG,
     "raise": ERROR, "nan": ERROR, "set": ERROR, "no mapping": ERROR, "print": DONE,
 }  # fmt: skip
 

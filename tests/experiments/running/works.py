@@ -12,7 +12,7 @@ import time
 from pathlib import Path
 from typing import Any
 
-from tmpud.errors import SimulatorError
+from tmpud.errors import SimulatorError, SimulatorHangError
 from tmpud.experiments.running.tasks import Json, Task
 
 HERE = "tests.experiments.running.works"
@@ -119,6 +119,8 @@ def misbehave(how: str) -> Any:
             write_garbage()
         case "simulator":
             raise SimulatorError("it has died")
+        case "still":
+            raise SimulatorHangError("it does not answer")
         case "nan":
             return {"distance": float("nan")}
         case "set":

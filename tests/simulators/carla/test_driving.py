@@ -9,8 +9,9 @@ from typer.testing import CliRunner
 
 from tests.carla_loopback.running import loopback
 from tmpud.cli import app
-from tmpud.errors import SimulatorError
+from tmpud.errors import SimulatorError, SimulatorHangError
 from tmpud.events import Finished, Header
+from tmpud.experiments.kinds import KINDS, read_findings
 from tmpud.experiments.trials.carla import CarlaTrials
 from tmpud.experiments.trials.grid import Grid, Route, cells
 from tmpud.roads import load_map
@@ -90,6 +91,45 @@ def test_a_trial_of_an_experiment_is_the_drive_with_its_options(blocks_xodr: Pat
         server.arm(die_at=1)
         with pytest.raises(SimulatorError):
             work.run(work.prepare(cell.task.shared), cell.task.arguments)
+
+
+def test_an_experiment_on_a_server_has_a_report_that_says_so_and_its_trials_can_be_looked_at(
+    blocks_xodr: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    asked, out = tmp_path / "asked.yaml", tmp_path / "out"
+    asked.write_text('{maps: blocks, missions: "random:1", traffic: {few: 1}, algorithms: [tmpud], seeds: 1}')
+    with loopback(blocks_xodr) as server:
+        where = ["--sim", "carla", "--port", str(server.port), "--out", str(out)]
+        assert CliRunner().invoke(app, ["sweep", str(asked), *where]).exit_code == 0
+        assert server.report()["actors"] == {}
+    report = (out / "report.md").read_text()
+    assert "# A sweep on a CARLA server" in report
+    assert f"| server | 127.0.0.1:{server.port} |" in report
+    assert "carla 0.9.16" in report
+    found = read_findings(out)
+    assert [(row.algorithm, row.status) for row in found.rows] == [("tmpud", "SUCCESS")]
+    assert found.kind.cells
+    assert [cell.task.key for cell in found.kind.cells(found.results.manifest["options"])] == ["few/00000/tmpud"]
+
+
+@pytest.mark.parametrize("name", ["table1", "sweep"])
+def test_each_grid_has_a_kind_of_its_own_on_a_server(name: str) -> None:
+    assert "CARLA server" in KINDS[f"{name}-carla"].title
+    assert KINDS[f"{name}-carla"].cells
+
+
+@pytest.mark.parametrize(("status", "error"), [("SIM_CRASH", SimulatorError), ("SIM_HANG", SimulatorHangError)])
+def test_a_trial_that_a_server_ends_is_a_fault_of_that_name(
+    status: str, error: type[SimulatorError], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ended = Finished(1.0, status, "no answer", 0.0, 1.0, 0, {"forced_stops": 0, "violations": 0})
+    monkeypatch.setattr("tmpud.experiments.trials.carla.drive", lambda *_, **__: [ended])
+    (cell,) = cells(replace(GRID, missions=("paper",), server="127.0.0.1:1"))
+    work = CarlaTrials()
+    with pytest.raises(error, match="no answer") as raised:
+        work.run(work.prepare(cell.task.shared), cell.task.arguments)
+    assert raised.type is error
 
 
 def test_on_a_net_that_is_shifted_against_the_servers_map_all_is_where_the_net_has_it(

@@ -19,6 +19,7 @@ from tmpud.roads.network import RoadNetwork
 from tmpud.scene import Control
 from tmpud.simulators.carla.session import Address
 from tmpud.simulators.carla.simulator import CarlaSimulator
+from tmpud.simulators.carla.turns import turn
 
 COAST = Control(0.0, 0.0)
 CARS = 4
@@ -146,6 +147,30 @@ def test_what_two_killed_processes_left_is_gone_when_the_next_drive_is(
     assert_drives(drive)
     drive.close()
     assert_left_as_found(server)
+
+
+def test_while_one_drive_uses_a_server_another_one_is_refused(start: Start, server: Loopback) -> None:
+    drive = start()
+    with pytest.raises(SimulatorError, match=f"in use by tmpud's process {drive.process}:"):
+        turn("127.0.0.1", server.port, 0.1)
+    drive.close()
+    turn("127.0.0.1", server.port, 0.1).close()
+
+
+HUNG = """
+import time
+from tmpud.simulators.carla import child
+class Hung(child.Child):
+    def _hang(self):
+        time.sleep(60.0)
+child.LONGEST = 1
+Hung().do("hang", {})
+"""
+
+
+def test_a_client_that_hangs_with_nobody_left_to_see_it_ends() -> None:
+    command = [sys.executable, "-c", HUNG]
+    assert subprocess.run(command, check=False).returncode == -signal.SIGALRM
 
 
 @pytest.mark.parametrize("version", ["0.9.15", "0.10.0"])

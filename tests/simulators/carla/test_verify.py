@@ -22,12 +22,14 @@ def failed(checks: dict[str, Check]) -> set[str]:
 def test_a_good_server_passes_in_everything(blocks_xodr: Path, blocks_net: Path) -> None:
     checks = tried(blocks_xodr, blocks_net)
     assert failed(checks) == set()
+    assert "steer > 0 turns it 0.1" in checks["steers right"].found
+    assert "rad to the right" in checks["steers right"].found
     assert {"versions", "settings", "steers left", "collision", "repeatable", "left as found"} <= checks.keys()
 
 
 def test_mirrored_steering_and_actors_that_stay_are_seen(blocks_xodr: Path, blocks_net: Path) -> None:
     checks = tried(blocks_xodr, blocks_net, mirrored=True, keeps_actors=True)
-    assert {"steers left", "left as found"} <= failed(checks)
+    assert {"steers left", "steers right", "left as found"} <= failed(checks)
     assert {"versions", "settings", "speeds up", "brakes"}.isdisjoint(failed(checks))
 
 

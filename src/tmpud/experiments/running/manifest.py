@@ -45,12 +45,17 @@ def describe(experiment: Experiment, tasks: Sequence[Task]) -> dict[str, Any]:
         "experiment": experiment.name,
         "options": json.loads(json.dumps(experiment.options, allow_nan=False)),
         "tasks": {"count": len(keys), "digest": digest(keys)},
-        "versions": {name: importlib.metadata.version(name) for name in PACKAGES}
+        "versions": {name: importlib.metadata.version(name) for name in _packages(experiment)}
         | {"python": platform.python_version()},
         "code": code_digest(),
         "command": experiment.command,
         "begun": datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ"),
     }
+
+
+def _packages(experiment: Experiment) -> tuple[str, ...]:
+    """Return what decides about results; a CARLA server is refused that is not of its client's version."""
+    return (*PACKAGES, "carla") if experiment.options.get("server") else PACKAGES
 
 
 def claim(folder: Path, manifest: Json) -> None:

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import fcntl
 import json
 import os
-import time
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
@@ -17,6 +15,7 @@ from tmpud.errors import FolderError
 from tmpud.experiments.running import lines
 from tmpud.experiments.running.manifest import Experiment, claim, describe, read_manifest, sync_folder
 from tmpud.experiments.running.tasks import DONE, Json, Record, Task, results_hash
+from tmpud.locks import HeldError, held
 
 RESULTS = "results.jsonl"
 TIMING = "timing.jsonl"  # wall-clock times, in no hash
@@ -146,26 +145,12 @@ def _write(descriptor: int, data: bytes) -> None:
 
 
 def _locked(file: Path) -> IO[str]:
-    """Return the lock file, held until it is closed or its owner ends, however that ends."""
-    lock = file.open("a+", encoding="utf-8")
-    until = time.monotonic() + PATIENCE
-    while True:
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError as error:
-            if time.monotonic() < until:
-                time.sleep(0.05)
-                continue
-            lock.seek(0)
-            owner = lock.read().strip() or "unknown"
-            lock.close()
-            raise FolderError(
-                f"{file.parent}: in use by process {owner}; wait until it is done, or choose another folder"
-            ) from error
-        lock.truncate(0)
-        lock.write(f"{os.getpid()}\n")
-        lock.flush()
-        return lock
+    try:
+        return held(file, PATIENCE)
+    except HeldError as owner:
+        raise FolderError(
+            f"{file.parent}: in use by process {owner}; wait until it is done, or choose another folder"
+        ) from owner
 
 
 @contextmanager

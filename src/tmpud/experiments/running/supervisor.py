@@ -118,10 +118,10 @@ class Supervisor:
 
     def _end(self, worker: Worker, status: str, result: Json, seconds: Any) -> list[Finished]:
         """Take the answer to the task that a worker runs."""
-        if status not in (DONE, ERROR, SIM_CRASH):
+        if status not in (DONE, ERROR, SIM_CRASH, SIM_HANG):
             raise ValueError("no status")
         task = worker.finished()
-        if status == SIM_CRASH:
+        if status in (SIM_CRASH, SIM_HANG):
             return self._blame([task], status, str(result.get("message")))
         return [_finished(task, status, result, {"seconds": seconds, "prepared": self._prepared.pop(worker, 0.0)})]
 

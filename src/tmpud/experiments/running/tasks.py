@@ -55,7 +55,7 @@ class Work(Protocol):
         ...
 
     def run(self, prepared: Any, arguments: Json) -> Json:
-        """Do one task; what it raises is a tool fault, and a SimulatorError a crash: it is tried once more."""
+        """Do one task; what it raises is a tool fault, and a SimulatorError a crash or hang: tried once more."""
         ...
 
 

@@ -23,9 +23,9 @@ from collections.abc import Callable
 from functools import cache, partial
 from typing import Any
 
-from tmpud.errors import SimulatorError
+from tmpud.errors import SimulatorError, SimulatorHangError
 from tmpud.experiments.running.processes import die_with, ending, exit_code, fork, threads
-from tmpud.experiments.running.tasks import DONE, ERROR, SIM_CRASH, Json, NotingWork, Work, located
+from tmpud.experiments.running.tasks import DONE, ERROR, SIM_CRASH, SIM_HANG, Json, NotingWork, Work, located
 
 ADDRESS = re.compile(r"0x[0-9a-f]+")  # of an object: another in each process
 Send = Callable[[Json], None]
@@ -108,9 +108,14 @@ def _here(work: Work, prepared: Any, arguments: Json) -> Json:
         result = dict(work.run(prepared, arguments))
         json.dumps(result, allow_nan=False)
     except Exception as error:
-        status = SIM_CRASH if isinstance(error, SimulatorError) else ERROR
-        return {"status": status, "result": {"message": _message(error)}}
+        return {"status": _status(error), "result": {"message": _message(error)}}
     return {"status": DONE, "result": result}
+
+
+def _status(error: Exception) -> str:
+    if isinstance(error, SimulatorHangError):
+        return SIM_HANG
+    return SIM_CRASH if isinstance(error, SimulatorError) else ERROR
 
 
 def _in_child(connection: int, work: Work, prepared: Any, arguments: Json) -> Json:

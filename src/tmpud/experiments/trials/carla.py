@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from tmpud.errors import SimulatorError
+from tmpud.errors import SimulatorError, SimulatorHangError
 from tmpud.experiments.running.tasks import SIM_CRASH, SIM_HANG, Json
 from tmpud.experiments.trials.full import summary
 from tmpud.runner import Mission, carla, drive
 from tmpud.simulators.carla.session import Address
+
+FAULTS = {SIM_CRASH: SimulatorError, SIM_HANG: SimulatorHangError}
 
 
 class CarlaTrials:
@@ -22,6 +24,6 @@ class CarlaTrials:
         words = {**prepared, **arguments, "via": tuple(prepared.get("via", ()))}
         server = Address.named(words.pop("server"))
         result = summary(drive(Mission(**words), simulator=carla(server), frames=False, alternatives=0))
-        if result["status"] in (SIM_CRASH, SIM_HANG):
-            raise SimulatorError(result["message"])
+        if result["status"] in FAULTS:
+            raise FAULTS[result["status"]](result["message"])
         return result

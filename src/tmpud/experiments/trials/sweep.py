@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -69,8 +71,11 @@ class _File(BaseModel):
     seeds: Annotated[list[Annotated[int, Field(ge=0)]], BeforeValidator(_seeds), *Several[1:]] = list(range(20))
 
 
-def read_sweep(file: Path) -> Grid:
-    """Return the grid that a file describes; RequestError names the file and the path of the key that is wrong."""
+def read_sweep(file: Path, server: str = "", map_of: Callable[[str], str] = str) -> Grid:
+    """Return the grid that a file describes, to be driven on a CARLA server where one is given.
+
+    ``map_of`` returns what a map's name stands for. RequestError names the file and the path of the key that is wrong.
+    """
     try:
         content = yaml.safe_load(file.read_text(encoding="utf-8"))
     except yaml.YAMLError as error:
@@ -82,6 +87,7 @@ def read_sweep(file: Path) -> Grid:
     except UnicodeDecodeError as error:
         raise RequestError(f"{file}: cannot be read as text: {error}") from error
     grid = _grid(file, content)
+    grid = replace(grid, server=server, maps=tuple(map(map_of, grid.maps)))
     try:
         cells(grid)
     except TmpudError as error:

@@ -7,6 +7,7 @@ at a time. When the pipe's other end is gone it leaves the server as it found it
 from __future__ import annotations
 
 import contextlib
+import signal
 import sys
 from multiprocessing.connection import Connection
 from typing import Any
@@ -19,6 +20,9 @@ from tmpud.scene import FloatArray
 from tmpud.simulators.carla.drive import Drive
 from tmpud.simulators.carla.messages import receive, send
 from tmpud.simulators.carla.server import Server
+from tmpud.simulators.carla.turns import turn
+
+LONGEST = 240  # [s] for one thing; whoever asked has given up long before, if he is still there
 
 Answer = tuple[dict[str, Any], FloatArray | None]
 
@@ -32,10 +36,15 @@ class Child:
 
     def do(self, name: str, arguments: dict[str, Any]) -> Answer:
         """Do what is asked; RuntimeError (the client's) or SimulatorError where it cannot be done."""
-        answer: Answer = getattr(self, f"_{name}")(**arguments)
+        signal.alarm(LONGEST)  # ends this process, where the client hangs and nobody is left to do so
+        try:
+            answer: Answer = getattr(self, f"_{name}")(**arguments)
+        finally:
+            signal.alarm(0)
         return answer
 
     def _connect(self, host: str, port: int, patience: float) -> Answer:
+        self._turn = turn(host, port)
         self._server = Server(carla.Client(host, port), patience)
         return {"version": self._server.version, "found": self._server.found}, None
 
@@ -105,7 +114,7 @@ def serve(link: Connection) -> None:
         wanted = name != "close"
         try:
             words, table = child.do(name, arguments)
-        except (RuntimeError, SimulatorError) as error:
+        except (RuntimeError, OSError, SimulatorError) as error:
             words, table = {"error": " ".join(str(error).split())}, None
         with contextlib.suppress(OSError):
             send(link, words, table)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.metadata
 from collections.abc import Iterable
+from contextlib import nullcontext
 from typing import Any
 
 import carla
@@ -11,6 +12,7 @@ import carla
 from tmpud.errors import SimulatorError
 from tmpud.geometry import Point, Pose
 from tmpud.roads.carla_coordinates import from_pose
+from tmpud.simulators.carla.waking import Waker
 from tmpud.simulators.conventions import DT
 
 CONNECTED = 2.5  # [s] in which a server says its version
@@ -37,6 +39,8 @@ class Server:
         self.found = self.settings()  # what to leave behind
         self.ours: set[int] = set()  # ids of our actors
         self._taken = False  # whether there is anything to put back
+        self._frame = 0  # the last
+        self.waker: Waker | None = None  # while a Traffic Manager takes part in ticks
 
     def load(self, name: str) -> None:
         """Load a map anew: no actors of anybody's, the clock at 0, and step by step from here on."""
@@ -70,11 +74,17 @@ class Server:
 
     def tick(self) -> Any:
         """Take one step and return the snapshot of it: the only place that ticks, and the only one that reads it."""
-        frame = self.world.tick(self._patience)
+        with self.waker.watching(self._ticked) if self.waker else nullcontext():
+            frame = self.world.tick(self._patience)
+        self._frame = frame
         snapshot = self.world.get_snapshot()
         if snapshot.frame != frame:
             raise RuntimeError(f"ticked to frame {frame}, the world shows frame {snapshot.frame}")
         return snapshot
+
+    def _ticked(self) -> bool:
+        """Return whether the world has gone on since the last step; for the waker's thread."""
+        return bool(self.world.get_snapshot().frame > self._frame)
 
     def destroy(self, ids: Iterable[int]) -> None:
         """Take actors of ours away."""

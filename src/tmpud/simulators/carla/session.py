@@ -114,6 +114,8 @@ class Session:
             self._process.wait(MARGIN)
         code, said = self._process.poll(), self._last_words()
         self._end()
+        if asked == "connect":
+            return self._fault(f"whoever listens there is no CARLA server: the client ended with {code}: {said}")
         return self._fault(f"the client ended with {code} when asked to '{asked}': {said}")
 
     def _refused(self, asked: str, why: str) -> SimulatorError:

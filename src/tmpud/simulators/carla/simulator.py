@@ -15,13 +15,13 @@ from tmpud.roads.network import RoadNetwork
 from tmpud.scene import Control, FloatArray, Scene, Vehicles, VehicleState
 from tmpud.simulators.carla.lanes import LaneFinder
 from tmpud.simulators.carla.messages import COLUMNS, Message
-from tmpud.simulators.carla.session import LOADED, Address, Session
+from tmpud.simulators.carla.session import LOADED, MARGIN, Address, Session
 from tmpud.simulators.carla.signals import Signals
 from tmpud.simulators.conventions import DT, EGO_ID, SENSING_RANGE, Closing
 from tmpud.simulators.traffic import TrafficRules
 
 WARM_UP = 30.0  # [s] simulated
-CHUNK = 20  # steps between two signs of life while the traffic warms up; all take less than three slow ones
+CHUNK = 20  # steps between two signs of life while the traffic warms up; all take less than two slow ones
 
 
 class CarlaSimulator(Closing):
@@ -51,7 +51,7 @@ class CarlaSimulator(Closing):
         try:
             self._take(self._session.ask("load", LOADED, name=network.name, seed=seed, traffic=traffic, rules=words))
             for _ in range(round(warm_up / DT / CHUNK)):
-                self._take(self._session.ask("warm_up", 3 * self._session.patience, steps=CHUNK))
+                self._take(self._session.ask("warm_up", 2 * (self._session.patience + MARGIN), steps=CHUNK))
         except SimulatorError:
             self.close()
             raise

@@ -13,6 +13,7 @@ from tmpud.errors import SimulatorError
 from tmpud.geometry import Point, Pose
 from tmpud.roads.carla_coordinates import KMH, to_point
 from tmpud.simulators.carla.server import ROLE, Server, above
+from tmpud.simulators.carla.waking import Waker
 from tmpud.simulators.conventions import SENSING_RANGE
 
 ROOM = 10.0  # [m] around a spawn point where a car appears
@@ -29,6 +30,7 @@ class Traffic:
         self._manager.set_random_device_seed(seed % 2**31)
         self._manager.set_hybrid_physics_mode(False)
         self._manager.set_global_distance_to_leading_vehicle(rules["min_gap"])
+        server.waker = Waker(self._port)
         self._points = list(server.world.get_map().get_spawn_points())
         self._models = _cars(server.world.get_blueprint_library())
         self._ids: set[int] = set()
@@ -108,6 +110,9 @@ class Traffic:
 
         Without an end the next session would hang or crash.
         """
+        if self._server.waker:
+            self._server.waker.end()
+            self._server.waker = None
         self._manager.set_synchronous_mode(False)
         self._manager.shut_down()
 

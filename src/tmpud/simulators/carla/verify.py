@@ -12,9 +12,10 @@ from typing import Any
 import numpy as np
 
 from tmpud.errors import SimulatorError
+from tmpud.geometry import wrap_angle
 from tmpud.roads.loading import load_map
 from tmpud.roads.network import Lane, RoadNetwork
-from tmpud.scene import Control, Scene, Vehicles
+from tmpud.scene import Control, Scene, Vehicles, VehicleState
 from tmpud.simulators.carla.maps import fetch
 from tmpud.simulators.carla.session import CLOSED, Address, Session
 from tmpud.simulators.carla.signals import DARK
@@ -88,16 +89,24 @@ def _driving(town: CarlaSimulator, network: RoadNetwork) -> Iterator[Check]:
     clock = math.isclose(scene.time - began, 40 * DT, abs_tol=1e-6)
     yield Check("clock", clock, f"40 steps are {scene.time - began:.3f} s")
     yield Check("speeds up", abs(scene.ego.speed - 4.0) < 1.0, f"2 m/s2 for 2 s: {scene.ego.speed:.2f} m/s")
-    before = scene.ego
-    after = _driven(town, Control(0.0, 0.1), 20).ego
-    driven = math.dist(before.pose[:2], after.pose[:2])
-    angle, expected = after.pose.heading - before.pose.heading, driven * math.tan(0.1) / WHEELBASE
-    signs = angle > 0.0 and after.yaw_rate > 0.0
-    yield Check("steers left", signs, f"+0.1 rad turns by {angle:+.3f} rad, yaw rate {after.yaw_rate:+.3f} rad/s")
-    yield Check("steers enough", 0.6 < angle / expected < 1.4, f"{angle / expected:.2f} of a bicycle's turn")
+    yield from _steering(town, scene.ego)
     for _ in range(80):
         scene = town.step(Control(-3.0 if scene.ego.speed > 0.1 else 0.0, 0.0))
     yield Check("brakes", abs(scene.ego.speed) < 0.1, f"after 4 s of braking {scene.ego.speed:.2f} m/s")
+
+
+def _steering(town: CarlaSimulator, ego: VehicleState) -> Iterator[Check]:
+    """Try both directions; what we call left is a steer below 0 on the server."""
+    for name, sign, angle in (("right", ">", -0.1), ("left", "<", 0.1)):
+        after = _driven(town, Control(0.0, angle), 20).ego
+        turned = wrap_angle(after.pose.heading - ego.pose.heading)
+        right = math.copysign(1.0, turned) == math.copysign(1.0, after.yaw_rate) == math.copysign(1.0, angle)
+        there = "left" if turned > 0.0 else "right"
+        found = f"steer {sign} 0 turns it {abs(turned):.3f} rad to the {there}, yaw rate {after.yaw_rate:+.3f} rad/s"
+        yield Check(f"steers {name}", right, found)
+        share = abs(turned) / (math.dist(ego.pose[:2], after.pose[:2]) * math.tan(0.1) / WHEELBASE)
+        ego = after
+    yield Check("steers enough", 0.6 < share < 1.4, f"{share:.2f} of a bicycle's turn")
 
 
 def _town(town: CarlaSimulator, network: RoadNetwork, traffic: int) -> Iterator[Check]:
