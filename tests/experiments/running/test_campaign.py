@@ -237,6 +237,35 @@ def test_an_interrupt_leaves_no_worker_and_loses_nothing(tmp_path: Path, number:
     assert children() == set()
 
 
+class Struck:
+    """Something that an interrupt meets while it is destroyed, where Python drops what is raised."""
+
+    def __init__(self, number: signal.Signals) -> None:
+        self._number = number
+
+    def __del__(self) -> None:
+        os.kill(os.getpid(), self._number)
+
+
+@pytest.mark.usefixtures("heard")
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("left", [5, 0])
+def test_an_interrupt_that_python_drops_is_not_lost(tmp_path: Path, number: signal.Signals, left: int) -> None:
+    campaign, seen = run(tmp_path, tasks(6), jobs=1, recycle_after=1), list[Record]()
+
+    def collect() -> None:
+        for record in campaign:
+            seen.append(record)
+            if len(seen) == 6 - left:
+                Struck(number)
+
+    with pytest.raises(KeyboardInterrupt):
+        collect()
+    assert len(seen) <= 6 - left + 1
+    assert children() == set()
+
+
 def children() -> set[str]:
     """Return the processes this one has started that are still there."""
     listed = Path(f"/proc/{os.getpid()}/task/{threading.main_thread().native_id}/children").read_text()

@@ -6,11 +6,11 @@ import signal
 import sys
 import threading
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import closing, contextmanager
 from pathlib import Path
 from types import FrameType
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from tmpud.errors import RequestError
 from tmpud.experiments.running.manifest import Experiment
@@ -41,7 +41,7 @@ def run_campaign(
     there. FolderError where the folder is another experiment's, in use, or cannot be written.
     """
     check(tasks)
-    with _terminable(), Store(folder, experiment, tasks) as store:
+    with _interruptible() as check_interrupt, Store(folder, experiment, tasks) as store:
         for damage in store.damages:
             complain(damage)
         done = {key: record for key, record in store.records.items() if record.status == DONE}
@@ -53,6 +53,7 @@ def run_campaign(
         yield from done.values()
         with closing(Supervisor(missing, limits, store.log).run()) as batches:
             for batch in batches:
+                check_interrupt()
                 store.append(ended.record for ended in batch)
                 store.note(ended.timing for ended in batch)
                 for ended in batch:
@@ -71,18 +72,30 @@ def check(tasks: Sequence[Task]) -> None:
 
 
 @contextmanager
-def _terminable() -> Iterator[None]:
-    """Have SIGTERM raise KeyboardInterrupt, where nothing else was arranged."""
+def _interruptible() -> Iterator[Callable[[], None]]:
+    """Have SIGTERM raise KeyboardInterrupt as SIGINT does, where nothing else was arranged.
+
+    Gives what raises it again if it was lost: Python drops what is raised while an object is destroyed.
+    """
+    struck = False
 
     def interrupt(_signal: int, _frame: FrameType | None) -> NoReturn:
+        nonlocal struck
+        struck = True
         raise KeyboardInterrupt
 
+    def check_interrupt() -> None:
+        if struck:
+            raise KeyboardInterrupt
+
+    usual: dict[int, Any] = {signal.SIGINT: signal.default_int_handler, signal.SIGTERM: signal.SIG_DFL}
     in_main = threading.current_thread() is threading.main_thread()
-    if not in_main or signal.getsignal(signal.SIGTERM) is not signal.SIG_DFL:
-        yield
-        return
-    signal.signal(signal.SIGTERM, interrupt)
+    ours = {number: usual[number] for number in usual if in_main and signal.getsignal(number) is usual[number]}
+    for number in ours:
+        signal.signal(number, interrupt)
     try:
-        yield
+        yield check_interrupt
+        check_interrupt()
     finally:
-        signal.signal(signal.SIGTERM, signal.SIG_DFL)
+        for number, handler in ours.items():
+            signal.signal(number, handler)
