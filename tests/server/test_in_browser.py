@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Page, sync_playwright
+from playwright.sync_api import FrameLocator, Page, sync_playwright
 
 from tests.experiments.made_results import GRID, made_results
 from tests.server.asking import Served, served
@@ -41,6 +41,14 @@ def browsing(server: Served, expected: str = "nothing at all") -> Iterator[Page]
         yield page
         browser.close()
     assert [line for line in said if expected not in line] == []
+
+
+def played(page: Page) -> FrameLocator:
+    """Play the replay inside a page."""
+    replay = page.frame_locator("#frame")
+    replay.locator("#play").click()
+    replay.locator("#clock").wait_for()
+    return replay
 
 
 def test_hostile_names_do_nothing(tmp_path: Path) -> None:
@@ -94,8 +102,7 @@ def test_a_replay_plays_inside_its_page_and_what_came_since_can_be_had(tmp_path:
         log.write_bytes(data)
         page.click("text=Show what came since")
         replay.locator("#missing").wait_for(state="detached")
-        replay.locator("#play").click()
-        replay.locator("#clock").wait_for()
+        played(page)
         assert page.locator("#newer").is_hidden()
 
 
@@ -106,9 +113,7 @@ def test_a_run_and_another_play_in_step_inside_one_page(tmp_path: Path) -> None:
         page.click("text=root/one")
         page.click("text=Beside another run")
         page.click("a:has-text('root/two')")
-        replay = page.frame_locator("#frame")
-        replay.locator("#play").click()
-        replay.locator("#clock").wait_for()
+        replay = played(page)
         assert replay.locator("canvas").count() >= 2
 
 
@@ -123,9 +128,7 @@ def test_a_click_leads_from_a_point_to_its_trials_and_on_to_the_replay(
         page.wait_for_selector("h1:has-text('normal')")
         page.click("text=0: its replay")
         page.wait_for_selector("text=not the same")
-        replay = page.frame_locator("#frame")
-        replay.locator("#play").click()
-        replay.locator("#clock").wait_for()
+        played(page)
         page.go_back()
         page.go_back()
         page.locator("#points svg a").first.focus()

@@ -13,11 +13,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from tmpud.cli.options import TOWN, Jobs, Json, Map, Running, Setting, Sim, Simulated, grouped
-from tmpud.cli.running import PATIENCE, run_tasks
+from tmpud.cli.running import run_tasks
 
 if TYPE_CHECKING:
     from tmpud.experiments.kinds import Findings
     from tmpud.experiments.running.tasks import Task
+    from tmpud.experiments.running.workers import Limits
     from tmpud.experiments.trials.grid import Grid
 
 app = typer.Typer()
@@ -94,11 +95,12 @@ def calibration(
     from tmpud.experiments.reports.document import write_report
     from tmpud.experiments.reports.table import as_text
     from tmpud.experiments.running.store import provenance
+    from tmpud.experiments.running.workers import Limits
     from tmpud.experiments.worlds.models import read_world
 
     options = {"merges": merges, "drives": drives, "first_seed": first_seed, "map": map_}
     tasks = calibration_tasks(merges, drives, first_seed, map_)
-    folder, results = run_tasks("calibration", options, tasks, running.out, jobs=running.jobs)
+    folder, results = run_tasks("calibration", options, tasks, running.out, Limits(jobs=running.jobs))
     found, worlds = measured(results.records), checks(results.records, read_world())
     files = write_report(folder, calibration_report(found, worlds, results.manifest["command"], provenance(results)))
     if running.as_json:
@@ -119,10 +121,11 @@ def learn_world(
     """Learn the abstract simulation's models. Forces merges in a small area of the full simulator."""
     from datetime import UTC, datetime
 
+    from tmpud.experiments.running.workers import Limits
     from tmpud.experiments.worlds.learning import tasks, to_json, world
 
-    options = {"merges": merges, "seed": seed}
-    _, results = run_tasks("learn-world", options, tasks(merges, seed), out.with_name(out.name + ".runs"), jobs=jobs)
+    options, runs = {"merges": merges, "seed": seed}, out.with_name(out.name + ".runs")
+    _, results = run_tasks("learn-world", options, tasks(merges, seed), runs, Limits(jobs=jobs))
     command, time = results.manifest["command"], datetime.now(UTC).isoformat(timespec="seconds")
     learned = world(results.records, merges=merges, seed=seed, command=command, time=time)
     out.write_text(to_json(learned), encoding="utf-8")
@@ -172,24 +175,26 @@ def results(
 
 def _of_grid(name: str, grid: Grid, where: Simulated, running: Running) -> None:
     """Run a grid of trials. A CARLA server drives one at a time, as slowly as it may: each of its steps is watched."""
+    from tmpud.experiments.running.workers import Limits
     from tmpud.experiments.trials.grid import cells
 
     tasks = [cell.task for cell in cells(grid)]
     if where.sim is Sim.SUMO:
         _experiment(name, grid.to_json(), tasks, running)
     else:
-        _experiment(f"{name}-carla", grid.to_json(), tasks, replace(running, jobs=1), patience=ON_A_SERVER)
+        _experiment(f"{name}-carla", grid.to_json(), tasks, running, Limits(jobs=1, task=ON_A_SERVER))
 
 
 def _experiment(
-    name: str, options: Mapping[str, Any], tasks: Sequence[Task], running: Running, *, patience: float = PATIENCE
+    name: str, options: Mapping[str, Any], tasks: Sequence[Task], running: Running, limits: Limits | None = None
 ) -> None:
     """Run what is left of an experiment of trials, write its report, and say what came out."""
     from tmpud.experiments.kinds import findings
     from tmpud.experiments.reports.document import write_report
     from tmpud.experiments.reports.export import write_rows
+    from tmpud.experiments.running.workers import Limits
 
-    folder, results = run_tasks(name, options, tasks, running.out, jobs=running.jobs, patience=patience)
+    folder, results = run_tasks(name, options, tasks, running.out, limits or Limits(jobs=running.jobs))
     found = findings(results)
     write_rows(found.rows, folder / "trials.csv")
     files = write_report(folder, found.report())

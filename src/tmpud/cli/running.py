@@ -13,18 +13,11 @@ import typer
 if TYPE_CHECKING:
     from tmpud.experiments.running.store import Results
     from tmpud.experiments.running.tasks import Task
-
-PATIENCE = 600.0  # [s] wall clock, then a task hangs
+    from tmpud.experiments.running.workers import Limits
 
 
 def run_tasks(
-    name: str,
-    options: Mapping[str, Any],
-    tasks: Sequence[Task],
-    out: Path | None,
-    *,
-    jobs: int,
-    patience: float = PATIENCE,
+    name: str, options: Mapping[str, Any], tasks: Sequence[Task], out: Path | None, limits: Limits
 ) -> tuple[Path, Results]:
     """Run what is left of an experiment; return its folder and all that the folder holds then."""
     from tmpud.experiments.running.campaign import run_campaign
@@ -32,12 +25,10 @@ def run_tasks(
     from tmpud.experiments.running.progress import Progress
     from tmpud.experiments.running.store import read_results
     from tmpud.experiments.running.tasks import digest
-    from tmpud.experiments.running.workers import Limits
 
     folder = out or Path("results") / f"{name}-{digest(options)[:8]}"
-    typer.echo(f"{name}: {len(tasks)} tasks, {jobs} at a time, into {folder}", err=True)
+    typer.echo(f"{name}: {len(tasks)} tasks, {limits.jobs} at a time, into {folder}", err=True)
     experiment = Experiment(name=name, options=options, command=_command())
-    limits = Limits(jobs=jobs, task=patience)
     for _ in run_campaign(folder, experiment, tasks, limits=limits, progress=Progress(name, len(tasks))):
         pass
     return folder, read_results(folder)

@@ -78,9 +78,7 @@ class Route:
             distance = hypot(x - px, y - py)
             if distance < least:
                 nearest, least = i, distance
-                i += 1
-            else:
-                i += 1 + int((distance - least) / SPACING)  # those between are no nearer
+            i += 1 + int((distance - least) / SPACING)  # those between are no nearer
         return nearest
 
     def beside(self, x: float, y: float, i: int) -> tuple[float, float]:
