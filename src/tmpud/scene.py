@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from tmpud.geometry import Pose
 
 FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]  # points and vectors of the plane, x + iy
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
-from tmpud.scene import FloatArray, Vehicles
+from tmpud.scene import ComplexArray, FloatArray, Vehicles
 
-STRAIGHT = 1e-20  # [rad] an angle whose sine is the angle
+STRAIGHT = 1e-20  # [rad/s] a yaw rate that nothing shows of
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -18,6 +19,11 @@ class Trajectory:
     times: FloatArray  # (T,) [s], relative to the scene, from 0
     poses: FloatArray  # (T, 3) x, y, heading of the centre of the box
     speeds: FloatArray  # (T,) [m/s]
+
+    @property
+    def places(self) -> ComplexArray:
+        """The centres x + iy (T,) [m]."""
+        return self.poses[:, 0] + 1j * self.poses[:, 1]
 
     @property
     def accelerations(self) -> FloatArray:
@@ -30,18 +36,35 @@ class Trajectory:
         return _derivative(np.unwrap(self.poses[:, 2]), self.times)
 
 
-def predict(others: Vehicles, times: FloatArray) -> FloatArray:
-    """Return the poses (N, T, 3) of N vehicles that keep their speed and yaw rate (Alg. 1, line 3)."""
-    turn = others.yaw_rate[:, None] * times  # (N, T)
-    half = turn / 2
-    mid = others.heading[:, None] + half
-    half[half == 0] = STRAIGHT
-    chord = others.speed[:, None] * times * (np.sin(half) / half)
-    poses = np.empty((*turn.shape, 3))
-    poses[..., 0] = others.x[:, None] + chord * np.cos(mid)
-    poses[..., 1] = others.y[:, None] + chord * np.sin(mid)
-    poses[..., 2] = others.heading[:, None] + turn
-    return poses
+class Prediction(NamedTuple):
+    """Where N vehicles will be at T instants, and how fast they will go which way."""
+
+    places: ComplexArray  # (N, T) centres of their boxes, x + iy [m]
+    velocities: ComplexArray  # (N, T) [m/s]
+
+
+def predict(others: Vehicles, times: FloatArray) -> Prediction:
+    """Return what becomes of N vehicles that keep their speed v and yaw rate w (Alg. 1, line 3).
+
+    A velocity V = v e^(i heading) becomes V e^(iwt), and a place moves by its integral, V (e^(iwt) - 1) / (iw).
+    """
+    yaw_rate = others.yaw_rate.copy()
+    yaw_rate[np.abs(yaw_rate) < STRAIGHT] = STRAIGHT
+    start, velocity = others.x + 1j * others.y, others.speed * direction(others.heading)
+    tangent = np.tan((yaw_rate / 2)[:, None] * times)  # of wt / 2; takes a third of the time of a sine
+    arc = np.empty(tangent.shape, np.complex128)  # (e^(iwt) - 1) / 2i
+    np.divide(tangent, 1 + tangent * tangent, out=arc.real)
+    np.multiply(tangent, arc.real, out=arc.imag)
+    chord = (2 * velocity / yaw_rate)[:, None] * arc
+    return Prediction(start[:, None] + chord, velocity[:, None] * (1 + 2j * arc))
+
+
+def direction(heading: FloatArray) -> ComplexArray:
+    """Return the unit vectors of that heading [rad], in an array of its shape."""
+    vectors = np.empty(heading.shape, np.complex128)
+    np.cos(heading, out=vectors.real)
+    np.sin(heading, out=vectors.imag)
+    return vectors
 
 
 def _derivative(values: FloatArray, times: FloatArray) -> FloatArray:

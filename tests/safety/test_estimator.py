@@ -1,5 +1,6 @@
 import math
 from dataclasses import replace
+from itertools import product
 from typing import Literal
 
 import numpy as np
@@ -8,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.judging.roads import crossroads
-from tests.safety.fakes import MERGELEFT, FakeMotion, car, mirrored, scene
+from tests.safety.fakes import FORWARD, MERGELEFT, FakeMotion, car, mirrored, scene
 from tmpud.errors import InfeasibleMotionError, InvalidStateError
 from tmpud.geometry import Pose
 from tmpud.presets import PAPER, RELEASED, TMPUD, Preset
@@ -129,9 +130,22 @@ def test_a_scene_that_is_not_finite_is_refused() -> None:
             estimate(bad)
 
 
-def test_a_scene_too_large_for_an_index_is_refused_and_never_called_safe() -> None:
-    with pytest.raises(InvalidStateError, match="so large"):
-        estimate(scene(car(5, 0, speed=1e160)))
+@pytest.mark.parametrize("step", [MERGELEFT, FORWARD])
+def test_a_scene_too_large_for_an_index_is_refused_and_never_called_safe(step: Transition) -> None:
+    for speed in (1e50, 1e155, 1e300):
+        with pytest.raises(InvalidStateError, match=r"scene at 0.0 s .* not below 1e\+50"):
+            estimate(scene(car(26, 6, speed=speed)), step=step)
+
+
+def test_the_largest_scenes_have_an_index() -> None:
+    places, speeds, yaw_rates = (0.0, 20.0, 26.0), (8.0, 1e20, 0.9e50), (0.0, 1e-9, 0.1, -0.9e50)
+    for x, heading, speed, yaw_rate in product(places, (0.0, 1.0, math.pi / 2), speeds, yaw_rates):
+        assert 0.0 <= estimate(scene(replace(car(x, 3, heading, speed), yaw_rate=yaw_rate))).safe <= 1.0
+
+
+def test_a_trajectory_that_is_not_finite_is_refused() -> None:
+    with pytest.raises(InvalidStateError, match=r"trajectory of .* not finite"):
+        estimate(scene(), motion=FakeMotion(curvature=math.nan))
 
 
 def test_ranges_that_are_none_are_refused() -> None:

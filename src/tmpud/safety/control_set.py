@@ -3,41 +3,35 @@
 Between the ego E and vehicle i, with dp = p_E - p_i, dv = v_E - v_i, d = |dp| and d' = dp.dv / d::
 
     phi  = D^2 - d^2 - alpha d'
-    phi' = -2 d d' - alpha d''      d'' = (|dv|^2 + dp.(a_E - a_i) - d'^2) / d
+    phi' = -2 d d' - alpha d''      d'' = (|dv|^2 - d'^2 + dp.(a_E - a_i)) / d
     U_i^S = {u : phi' <= -eta} where phi >= 0, else all of Delta x Theta
 
 The ego accelerates by a_E = a e + v w n (e ahead, n to its left, yaw rate w), the vehicle by a_i = v_i w_i n_i,
-so phi' is affine in a and w, and U_i^S is Delta x Theta cut by a line.
+so phi' is affine in a and w, and U_i^S is Delta x Theta cut by a line. |dv|^2 - d'^2 is (dp x dv)^2 / d^2.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tmpud.presets import Preset
-from tmpud.scene import FloatArray, Vehicles
-from tmpud.trajectory import Trajectory
+from tmpud.scene import ComplexArray, FloatArray, Vehicles
+from tmpud.trajectory import Prediction, Trajectory, direction
 
 TOUCHING = 1e-6  # [m] centres closer than this have no direction between them: no control is safe
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class SafetyIndex:
+class SafetyIndex(NamedTuple):
     """phi, and phi' as an affine function of the ego's control; each field of shape (N, T)."""
 
     phi: FloatArray  # [m^2]
     drift: FloatArray  # [m^2/s] phi' of an ego that neither accelerates nor turns; inf where d < TOUCHING
     by_acceleration: FloatArray  # [m^2/s per m/s^2] c_a
     by_yaw_rate: FloatArray  # [m^2/s per rad/s] c_w
-
-    @property
-    def defined(self) -> bool:
-        """Whether there is no NaN in it, as finite states leave only where they are too large to be squared."""
-        return not bool(np.isnan(self.phi + self.drift + self.by_acceleration + self.by_yaw_rate).any())
 
     def rate(self, acceleration: FloatArray, yaw_rate: FloatArray) -> FloatArray:
         """Return phi' (N, T) under the controls of T instants."""
@@ -66,6 +60,12 @@ class Controls(NamedTuple):
     turning: tuple[float, float]  # Theta [rad] or [rad/s]
     steering: bool  # whether Theta holds steering angles, else yaw rates
 
+    @property
+    def effects(self) -> tuple[float, float]:
+        """The ends of Theta as HalfPlane's x."""
+        low, high = self.turning
+        return (math.tan(low), math.tan(high)) if self.steering else (low, high)
+
 
 class SafeSets(NamedTuple):
     """U_i^S of N vehicles at T instants: all of Delta x Theta, or where ``cut`` a half-plane of it."""
@@ -75,26 +75,23 @@ class SafeSets(NamedTuple):
     controls: Controls  # Delta x Theta
 
 
-def safety_index(ego: Trajectory, others: Vehicles, predicted: FloatArray, preset: Preset) -> SafetyIndex:
-    """Return the index of every predicted vehicle (N, T, 3) at every instant of the ego's trajectory."""
-    cos, sin = np.cos(ego.poses[:, 2]), np.sin(ego.poses[:, 2])
-    cos_i, sin_i = np.cos(predicted[..., 2]), np.sin(predicted[..., 2])
-    dx, dy = ego.poses[:, 0] - predicted[..., 0], ego.poses[:, 1] - predicted[..., 1]
-    speed_i = others.speed[:, None]
-    dvx, dvy = ego.speeds * cos - speed_i * cos_i, ego.speeds * sin - speed_i * sin_i
-    turning_i = (dy * cos_i - dx * sin_i) * (others.speed * others.yaw_rate)[:, None]  # dp.a_i
-    d_squared, closing = dx * dx + dy * dy, dx * dvx + dy * dvy  # closing: dp.dv = d d'
-    touching = d_squared < TOUCHING**2
-    d = np.sqrt(d_squared)
+def safety_index(ego: Trajectory, others: Vehicles, predicted: Prediction, preset: Preset) -> SafetyIndex:
+    """Return the index of every predicted vehicle at every instant of the ego's trajectory."""
+    ahead, velocity_i = direction(ego.poses[:, 2]), predicted.velocities
+    dp, dv = ego.places - predicted.places, ego.speeds * ahead - velocity_i
+    d = np.abs(dp)
+    touching = d < TOUCHING
     d[touching] = 1.0
-    d_dot, weight = closing / d, -preset.closing_weight / d
-    # d d'' of an ego that neither accelerates nor turns
-    drifting = dvx * dvx + dvy * dvy - turning_i - d_dot * d_dot
+    moving = _inner(dp, dv)  # dp.dv = d d', and dp x dv
+    d_dot, swing, weight = moving.real / d, moving.imag / d, -preset.closing_weight / d
+    turning_i = _inner(velocity_i, dp).imag * others.yaw_rate[:, None]  # dp.a_i
+    drifting = swing * swing - turning_i  # d d'' of an ego that neither accelerates nor turns
+    pulling = _inner(ahead, dp)  # dp.e and dp.n
     index = SafetyIndex(
-        phi=preset.safety_distance**2 - d_squared - preset.closing_weight * d_dot,
-        drift=weight * drifting - 2 * closing,
-        by_acceleration=weight * (dx * cos + dy * sin),
-        by_yaw_rate=weight * (ego.speeds * (dy * cos - dx * sin)),
+        phi=preset.safety_distance**2 - d * d - preset.closing_weight * d_dot,
+        drift=weight * drifting - 2 * moving.real,
+        by_acceleration=weight * pulling.real,
+        by_yaw_rate=weight * (ego.speeds * pulling.imag),
     )
     index.drift[touching] = np.inf
     return index
@@ -126,3 +123,8 @@ def controls(preset: Preset) -> Controls:
     if not low < high or (steering and not max(-low, high) < np.pi / 2):
         raise ValueError(f"turning_range {preset.turning_range} must be (low, high), steering within a right angle")
     return Controls(preset.acceleration, preset.turning_range, steering)
+
+
+def _inner(a: ComplexArray, b: ComplexArray) -> ComplexArray:
+    """Return a.b, and as its imaginary part how far b leads to the left of a, times the length of a."""
+    return np.conj(a) * b

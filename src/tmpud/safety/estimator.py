@@ -17,7 +17,9 @@ from tmpud.safety.share import exact_share, sampled_share
 from tmpud.scene import FloatArray, Scene, Vehicles
 from tmpud.showing import ShownAsSvg
 from tmpud.symbols import Transition
-from tmpud.trajectory import Trajectory, predict
+from tmpud.trajectory import Prediction, Trajectory, predict
+
+TOO_LARGE = 1e50  # squares of squares of less are still numbers
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -49,30 +51,29 @@ class SafeSetEstimator:
     def estimate(self, transition: Transition, scene: Scene, rng: np.random.Generator) -> SafetyEstimate:
         """Return Safe of an action begun in a scene; the worst of ``ego_speeds`` counts.
 
-        The generator is only drawn from where the preset samples. Raises InvalidStateError for a scene that is not
-        finite, and what the motion planner raises where the action cannot be driven.
+        The generator is only drawn from where the preset samples. Raises InvalidStateError for a scene or a trajectory
+        with a value that is not finite or too large, and what the motion planner raises where it cannot be driven.
         """
-        _check(scene)
+        _check(f"the scene at {scene.time} s", np.array(scene.ego.body), *scene.others.columns)
         # Line 1: x is where the ego is, x' = f(s') ends the action; they set the horizon
         times = self._instants(transition)
         # Line 2
         trajectories = [
             self._motion.trajectory(transition, scene, times, speed) for speed in self._preset.ego_speeds or (None,)
         ]
+        for ego in trajectories:
+            _check(f"the trajectory of {transition}", ego.poses, ego.speeds)
         others = self._surrounding(transition, scene, trajectories[0])
         # Line 3
         predicted = predict(others, times)
         return min((self._along(ego, others, predicted, rng) for ego in trajectories), key=lambda e: (e.safe, e.min_t))
 
     def _along(
-        self, ego: Trajectory, others: Vehicles, predicted: FloatArray, rng: np.random.Generator
+        self, ego: Trajectory, others: Vehicles, predicted: Prediction, rng: np.random.Generator
     ) -> SafetyEstimate:
         # Lines 4 and 8: for each vehicle V_i, all in one array
         # Line 5
-        with np.errstate(over="ignore", invalid="ignore"):
-            index = control_set.safety_index(ego, others, predicted, self._preset)
-        if not index.defined:
-            raise InvalidStateError("the scene holds places or speeds so large that there is no safety index")
+        index = control_set.safety_index(ego, others, predicted, self._preset)
         # Line 6
         sets, o = self._share(index, ego, rng)
         # Line 7
@@ -132,8 +133,6 @@ def _least(
     )
 
 
-def _check(scene: Scene) -> None:
-    ego, others = scene.ego, scene.others
-    values = (others.x, others.y, others.z, others.heading, others.speed, others.yaw_rate, others.width)
-    if not all(np.isfinite(column).all() for column in (np.array([*ego.pose, ego.z, ego.speed]), *values)):
-        raise InvalidStateError(f"the scene at {scene.time} s holds a value that is not finite")
+def _check(what: str, *values: FloatArray) -> None:
+    if not all((np.abs(array) < TOO_LARGE).all() for array in values):
+        raise InvalidStateError(f"{what} holds a value that is not finite or not below {TOO_LARGE:g}")

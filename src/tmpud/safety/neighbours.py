@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from tmpud.presets import Preset
 from tmpud.roads.network import RoadNetwork
-from tmpud.scene import FloatArray, Scene, Vehicles
+from tmpud.scene import ComplexArray, FloatArray, Scene, Vehicles
 from tmpud.symbols import Transition
 from tmpud.trajectory import Trajectory, predict
 
@@ -41,7 +41,7 @@ def crossing(others: Vehicles, ego: Trajectory, ego_width: float) -> Vehicles:
     """Return the vehicles whose predicted path comes sideways within ``SIDE_GAP`` of the ego's planned path."""
     end = ego.times[-1]
     times = np.linspace(0.0, end, max(math.ceil(end / PATH_INTERVAL), 1) + 1)
-    distance = _distance(predict(others, times)[..., :2], ego.poses[:, :2]).min(axis=1)
+    distance = _distance(predict(others, times).places, ego.places).min(axis=1)
     return others.take(distance <= (others.width + ego_width) / 2 + SIDE_GAP)
 
 
@@ -57,12 +57,11 @@ def _feeding(lane: str, network: RoadNetwork) -> set[str]:
     return {feeder for way in ways for feeder in (way.from_lane, *way.internal_lanes)}
 
 
-def _distance(points: FloatArray, path: FloatArray) -> FloatArray:
-    """Return the distances (N, K) of points (N, K, 2) from a path through (T, 2) [m]."""
+def _distance(points: ComplexArray, path: ComplexArray) -> FloatArray:
+    """Return the distances (N, K) of points from a path through T points [m]."""
     starts = path[:-1] if len(path) > 1 else path
-    pieces = np.diff(path, axis=0) if len(path) > 1 else np.zeros_like(path)
-    offset = points[:, :, None, :] - starts  # (N, K, T - 1, 2)
-    squared = np.maximum((pieces**2).sum(axis=-1), 1e-12)
-    along = np.clip((offset * pieces).sum(axis=-1) / squared, 0.0, 1.0)
-    gap = offset - along[..., None] * pieces
-    return np.asarray(np.hypot(gap[..., 0], gap[..., 1]).min(axis=2))
+    pieces = np.diff(path) if len(path) > 1 else np.zeros_like(path)
+    offset = points[:, :, None] - starts  # (N, K, T - 1)
+    squared = np.maximum(np.abs(pieces) ** 2, 1e-12)
+    along = np.clip((offset * np.conj(pieces)).real / squared, 0.0, 1.0)
+    return np.asarray(np.abs(offset - along * pieces).min(axis=2))

@@ -2,8 +2,8 @@
 
 For a fixed turn x the safe accelerations are a clipped line, so the share is the mean over theta of
 ``clip((slack - c x) / span, 0, 1)`` with c = ``by_turning`` and span = ``|by_acceleration|`` times the width of Delta.
-It is 1 up to one turn (``full``), 0 beyond another (``none``), and the integral of a line between the two:
-breakpoints are arctangents and the antiderivative of the tangent is -ln cos where theta is a steering angle.
+It is 1 up to one turn, 0 beyond another, and the integral of a line between the two; where theta is a steering angle
+and x its tangent, those turns are arctangents, and the integral of the tangent is -ln cos theta = ln(1 + x^2) / 2.
 """
 
 from __future__ import annotations
@@ -24,15 +24,16 @@ def exact_share(plane: HalfPlane, controls: Controls) -> FloatArray:
     Where neither control has an effect, it is 1 or 0 as the limit is met or not.
     """
     low_a, high_a = controls.acceleration
-    slack = plane.limit - np.minimum(plane.by_acceleration * low_a, plane.by_acceleration * high_a)
-    span = np.abs(plane.by_acceleration) * (high_a - low_a)
-    slope = np.abs(plane.by_turning)
-    low, high = _mirrored(controls.turning, plane.by_turning)
+    (low, high), (least, most) = (_mirrored(ends, plane.by_turning) for ends in (controls.turning, controls.effects))
+    middle = plane.limit - plane.by_acceleration * ((low_a + high_a) / 2)
+    reach = np.abs(plane.by_acceleration) * ((high_a - low_a) / 2)
+    slack, slope = middle + reach, np.abs(plane.by_turning)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        full = _clip(_turn_at(slack - span, slope, controls.steering), low, high)
-        none = _clip(_turn_at(slack, slope, controls.steering), low, high)
-        partial = _partial(full, none - full, slack, slope, span, controls.steering)
-    return _clip((full - low + partial) / (high - low), 0.0, 1.0)
+        full = _clip((middle - reach) / slope, least, most)  # x up to which every acceleration is safe
+        none = _clip(slack / slope, least, most)  # x beyond which none is
+        turn, width, integral = _between(full, none, controls.steering)
+        partial = np.fmax((slack * width - slope * integral) / (2 * reach), 0.0)  # 0 / 0 where the line jumps
+    return np.asarray(np.minimum((turn - low + partial) / (high - low), 1.0))
 
 
 def sampled_share(plane: HalfPlane, controls: Controls, samples: int, rng: np.random.Generator) -> FloatArray:
@@ -56,38 +57,26 @@ def _count(rows: HalfPlane, controls: Controls, samples: int, rng: np.random.Gen
     return np.asarray(np.count_nonzero(inside, axis=1))
 
 
-def _mirrored(turning: tuple[float, float], effect: FloatArray) -> tuple[Bound, Bound]:
-    """Return Theta's ends, mirrored where turning left helps, so that the share always falls with the turn."""
-    low, high = turning
+def _mirrored(ends: tuple[float, float], effect: FloatArray) -> tuple[Bound, Bound]:
+    """Return a range's ends, mirrored where turning left helps, so that the share always falls with the turn."""
+    low, high = ends
     if low == -high:
-        return turning
+        return ends
     return np.where(effect < 0, -high, low), np.where(effect < 0, -low, high)
 
 
-def _turn_at(slack: FloatArray, slope: FloatArray, steering: bool) -> FloatArray:
-    """Return the turn at which ``slope * x`` uses up the slack; beyond all turns where there is no slope."""
-    effect = np.fmin(slack / slope, np.inf)  # 0 / 0 is all turns
-    return np.arctan(effect) if steering else effect
+def _clip(x: FloatArray, least: Bound, most: Bound) -> FloatArray:
+    """Limit x to a range; 0 / 0, where turning has no effect and all turns are safe, is its upper end."""
+    return np.asarray(np.maximum(np.fmin(x, most), least))
 
 
-def _partial(
-    full: FloatArray, width: FloatArray, slack: FloatArray, slope: FloatArray, span: FloatArray, steering: bool
-) -> FloatArray:
-    """Return the integral of ``(slack - slope x) / span`` over theta from ``full`` on over ``width``.
+def _between(start: FloatArray, end: FloatArray, steering: bool) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return theta where x is ``start``, how far it is from there to ``end``, and the integral of x on that way.
 
-    log1p keeps the difference of two logarithms precise where the width is tiny.
+    log1p and arctan2 keep the differences of two logarithms and two angles precise where they are tiny.
     """
-    start = np.tan(full) if steering else full
-    if steering:
-        half = np.tan(width / 2)
-        sine = 2 * half / (1 + half * half)
-        rise = -np.log1p(-sine * (half + start)) - start * width  # 2 sin^2(width / 2) = sine * half
-    else:
-        rise = width**2 / 2  # integral of x - x(full)
-    line = _clip((slack - slope * start) / span, 0.0, 1.0) * width - slope / span * rise
-    return np.where((width > 1e-15) & (span > 0), line, 0.0)
-
-
-def _clip(values: FloatArray, low: Bound, high: Bound) -> FloatArray:
-    """Do as ``np.clip``, which takes longer for few values."""
-    return np.minimum(np.maximum(values, low), high)
+    step = end - start
+    if not steering:
+        return start, step, step * (start + end) / 2
+    rise = step * (start + end) / (1 + start * start)
+    return np.arctan(start), np.arctan2(step, 1 + start * end), np.log1p(rise) / 2

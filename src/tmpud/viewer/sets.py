@@ -43,5 +43,5 @@ def predicted(event: Estimated) -> list[list[int]]:
     cars = [Body(x, y, 0.0, heading, speed, yaw_rate, 0.0, 0.0, 0.0) for x, y, heading, speed, yaw_rate in event.others]
     if not cars:
         return []
-    poses = predict(Vehicles(event.ids, event.ids, cars), np.array([row[0] for row in event.trajectory]))
-    return [line((x, y) for x, y, _ in path) for path in poses.tolist()]
+    paths = predict(Vehicles(event.ids, event.ids, cars), np.array([row[0] for row in event.trajectory])).places
+    return [line((place.real, place.imag) for place in path) for path in paths.tolist()]
