@@ -129,8 +129,7 @@ def _sampled(
 ) -> Route:
     count = max(int(line.length / SPACING) + 1, 3)
     stations: FloatArray = np.arange(count, dtype=np.float64) * SPACING
-    raw = np.array([line.pose_at(float(s))[:2] for s in stations])
-    x, y = np.ascontiguousarray(_smooth(raw).T)
+    x, y = np.ascontiguousarray(_smooth(_points_at(line, stations)).T)
     headings = np.unwrap(np.arctan2(np.gradient(y), np.gradient(x)))
     steps = np.hypot(np.gradient(x), np.gradient(y))
     curvature = np.gradient(headings) / np.maximum(steps, 1e-6)
@@ -138,11 +137,24 @@ def _sampled(
         _limits_at(stations, limit),
         np.sqrt(limits.max_lateral_acceleration * 0.8 / np.maximum(np.abs(curvature), 1e-6)),
     )
-    allowed = np.minimum(allowed, limits.max_speed)
-    for i in range(count - 2, -1, -1):  # brake in time for what comes
-        allowed[i] = min(allowed[i], math.sqrt(allowed[i + 1] ** 2 + 2 * COMFORTABLE_BRAKING * SPACING))
+    allowed = _braked(np.minimum(allowed, limits.max_speed))
     poses = tuple(map(Pose, x.tolist(), y.tolist(), headings.tolist()))
     return Route(x, y, headings, poses, curvature, allowed, end, gates, crossing)
+
+
+def _points_at(line: Polyline, stations: FloatArray) -> FloatArray:
+    """Return the points (P, 2) of a line at stations on it (P,)."""
+    points, begins = np.array(line.points), np.array(line.stations)
+    pieces = np.minimum(np.searchsorted(begins, stations, side="right") - 1, len(begins) - 2)
+    directions = np.diff(points, axis=0) / np.diff(begins)[:, None]
+    return np.asarray(points[pieces] + (stations - begins[pieces])[:, None] * directions[pieces])
+
+
+def _braked(allowed: FloatArray) -> FloatArray:
+    """Return the speeds (P,) that allow for braking in time for what comes: v_i^2 <= v_j^2 + 2 b (s_j - s_i)."""
+    gained = 2 * COMFORTABLE_BRAKING * SPACING * np.arange(len(allowed))
+    least = np.minimum.accumulate((allowed**2 + gained)[::-1])[::-1]
+    return np.asarray(np.minimum(np.sqrt(least - gained), allowed))
 
 
 def _limits_at(stations: FloatArray, limit: list[tuple[float, float]]) -> FloatArray:
