@@ -68,7 +68,7 @@ def tmpud(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], t
 def in_a_process(folder: Path, *words: str, hash_seed: str = "0") -> Result:
     """Run the command line in a fresh process."""
     done = subprocess.run(
-        [sys.executable, "-c", "from tmpud.cli import main; main()", *words],
+        [sys.executable, "-m", "tmpud", *words],
         cwd=folder,
         capture_output=True,
         text=True,
