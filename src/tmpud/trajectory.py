@@ -23,7 +23,7 @@ class Trajectory:
     @property
     def places(self) -> ComplexArray:
         """The centres x + iy (T,) [m]."""
-        return self.poses[:, 0] + 1j * self.poses[:, 1]
+        return points(self.poses[:, 0], self.poses[:, 1])
 
     @property
     def accelerations(self) -> FloatArray:
@@ -50,21 +50,24 @@ def predict(others: Vehicles, times: FloatArray) -> Prediction:
     """
     yaw_rate = others.yaw_rate.copy()
     yaw_rate[np.abs(yaw_rate) < STRAIGHT] = STRAIGHT
-    start, velocity = others.x + 1j * others.y, others.speed * direction(others.heading)
-    tangent = np.tan((yaw_rate / 2)[:, None] * times)  # of wt / 2; takes a third of the time of a sine
-    arc = np.empty(tangent.shape, np.complex128)  # (e^(iwt) - 1) / 2i
-    np.divide(tangent, 1 + tangent * tangent, out=arc.real)
-    np.multiply(tangent, arc.real, out=arc.imag)
-    chord = (2 * velocity / yaw_rate)[:, None] * arc
-    return Prediction(start[:, None] + chord, velocity[:, None] * (1 + 2j * arc))
+    velocity = others.speed * direction(others.heading)
+    tangent = np.tan((yaw_rate / 2)[:, None] * times)  # (N, T) of wt / 2; takes a third of the time of a sine
+    sine = tangent / (1 + tangent * tangent)  # half of that of wt
+    arc = points(sine, tangent * sine)  # (e^(iwt) - 1) / 2i
+    moved = (2 * velocity / yaw_rate)[:, None] * arc
+    return Prediction(points(others.x, others.y)[:, None] + moved, velocity[:, None] * (1 + 2j * arc))
+
+
+def points(x: FloatArray, y: FloatArray) -> ComplexArray:
+    """Return x + iy, in an array of their shape."""
+    both = np.empty(x.shape, np.complex128)
+    both.real, both.imag = x, y
+    return both
 
 
 def direction(heading: FloatArray) -> ComplexArray:
     """Return the unit vectors of that heading [rad], in an array of its shape."""
-    vectors = np.empty(heading.shape, np.complex128)
-    np.cos(heading, out=vectors.real)
-    np.sin(heading, out=vectors.imag)
-    return vectors
+    return points(np.cos(heading), np.sin(heading))
 
 
 def _derivative(values: FloatArray, times: FloatArray) -> FloatArray:

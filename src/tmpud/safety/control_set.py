@@ -7,7 +7,7 @@ Between the ego E and vehicle i, with dp = p_E - p_i, dv = v_E - v_i, d = |dp| a
     U_i^S = {u : phi' <= -eta} where phi >= 0, else all of Delta x Theta
 
 The ego accelerates by a_E = a e + v w n (e ahead, n to its left, yaw rate w), the vehicle by a_i = v_i w_i n_i,
-so phi' is affine in a and w, and U_i^S is Delta x Theta cut by a line. |dv|^2 - d'^2 is (dp x dv)^2 / d^2.
+so phi' is affine in a and w, and U_i^S is Delta x Theta cut by a line. |dv|^2 - d'^2 is (dv x dp)^2 / d^2.
 """
 
 from __future__ import annotations
@@ -77,21 +77,21 @@ class SafeSets(NamedTuple):
 
 def safety_index(ego: Trajectory, others: Vehicles, predicted: Prediction, preset: Preset) -> SafetyIndex:
     """Return the index of every predicted vehicle at every instant of the ego's trajectory."""
-    ahead, velocity_i = direction(ego.poses[:, 2]), predicted.velocities
-    dp, dv = ego.places - predicted.places, ego.speeds * ahead - velocity_i
+    dp = ego.places - predicted.places
     d = np.abs(dp)
     touching = d < TOUCHING
     d[touching] = 1.0
-    moving = _inner(dp, dv)  # dp.dv = d d', and dp x dv
+    pushing = _inner(direction(ego.poses[:, 2]), dp)  # dp.e and dp.n
+    own, theirs = ego.speeds * pushing, _inner(predicted.velocities, dp)
+    moving = own - theirs  # dp.dv = d d', and dv x dp
     d_dot, swing, weight = moving.real / d, moving.imag / d, -preset.closing_weight / d
-    turning_i = _inner(velocity_i, dp).imag * others.yaw_rate[:, None]  # dp.a_i
+    turning_i = theirs.imag * others.yaw_rate[:, None]  # dp.a_i
     drifting = swing * swing - turning_i  # d d'' of an ego that neither accelerates nor turns
-    pulling = _inner(ahead, dp)  # dp.e and dp.n
     index = SafetyIndex(
         phi=preset.safety_distance**2 - d * d - preset.closing_weight * d_dot,
         drift=weight * drifting - 2 * moving.real,
-        by_acceleration=weight * pulling.real,
-        by_yaw_rate=weight * (ego.speeds * pulling.imag),
+        by_acceleration=weight * pushing.real,
+        by_yaw_rate=weight * own.imag,
     )
     index.drift[touching] = np.inf
     return index
