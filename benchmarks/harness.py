@@ -45,6 +45,7 @@ class Result:
     skipped: Mapping[str, str] = field(default_factory=dict)  # entry -> why
     clock: str = "CPU time"
     facts: Mapping[str, object] = field(default_factory=dict)  # what was measured: sizes, seeds, counts
+    batch: tuple[int, str] | None = None  # how many of what a round works out, where throughput is of interest
 
     def median(self, name: str) -> float:
         return median(self.times[name])
@@ -53,6 +54,10 @@ class Result:
         """Return the p99, or the slowest of fewer than ENOUGH rounds."""
         times = self.times[name]
         return quantiles(times, n=100)[-1] if len(times) >= ENOUGH else max(times)
+
+    def throughput(self, name: str) -> float | None:
+        """Return how many of the batch's things a second gives [1/s]."""
+        return self.batch[0] / self.median(name) if self.batch else None
 
     def ratios(self, name: str) -> list[float]:
         """Return each round's time as a multiple of the base's."""

@@ -25,6 +25,8 @@ def table(result: Result) -> str:
     rounds = len(result.times[result.base])
     slow = "p99" if rounds >= ENOUGH else "slowest"
     head = [f"{result.title} (n = {rounds}, {result.clock})", "median", slow, f"x {result.base}"]
+    if result.batch:
+        head.append(f"{result.batch[1]}/s")
     if rounds <= FEW:
         head.append("each round")
     rows = [head, *([name, *_numbers(result, name)] for name in result.times)]
@@ -39,8 +41,10 @@ def table(result: Result) -> str:
 
 
 def _numbers(result: Result, name: str) -> list[str]:
-    ratios = result.ratios(name)
+    ratios, throughput = result.ratios(name), result.throughput(name)
     row = [shown(result.median(name)), shown(result.slow(name)), f"{median(ratios):.3g}"]
+    if throughput is not None:
+        row.append(f"{throughput:,.0f}")
     return [*row, " ".join(f"{ratio:.3g}" for ratio in ratios)] if len(ratios) <= FEW else row
 
 
@@ -76,6 +80,7 @@ def _result(result: Result) -> dict[str, Any]:
             "slow_s": result.slow(name),
             "ratio": median(result.ratios(name)),
             "each_s": list(times),
+            **({f"{result.batch[1]}_per_s": result.throughput(name)} if result.batch else {}),
         }
         for name, times in result.times.items()
     }

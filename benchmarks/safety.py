@@ -66,7 +66,7 @@ def among(vehicles: int, preset: Preset, asked: argparse.Namespace, *, slow: boo
     times = race([*ours(preset, rng), *(others(preset, asked.seed) if slow else ())], cases, 1, asked.turn)
     title = f"{vehicles} vehicles, {asked.instants} instants, M = {preset.samples}"
     facts = {"vehicles": vehicles, "instants": asked.instants, "samples": preset.samples, "turn_s": asked.turn}
-    return Result(title, OURS, times, facts=facts)
+    return Result(title, OURS, times, facts=facts, batch=(vehicles * asked.instants, "shares"))
 
 
 def scene(rng: np.random.Generator, vehicles: int, instants: int) -> SafetyCase:

@@ -4,6 +4,8 @@ import json
 import math
 from pathlib import Path
 
+import pytest
+
 from benchmarks.harness import Result
 from benchmarks.report import as_json, shown, table
 
@@ -21,6 +23,15 @@ def test_a_table_is_aligned_and_has_medians_ratios_and_who_was_skipped() -> None
 def test_a_p99_is_called_one_only_where_there_are_rounds_enough() -> None:
     assert "p99" not in table(RESULT)
     assert "p99" in table(Result("a race", "A", {"A": [0.001] * 100}))
+
+
+def test_a_batch_gives_a_throughput() -> None:
+    result = Result("a race", "A", {"A": [0.002] * 6}, batch=(500, "shares"))
+    head, only = table(result).splitlines()
+    assert head.endswith("shares/s")
+    assert only.split() == ["A", "2", "ms", "2", "ms", "1", "250,000"]
+    (found,) = as_json("safety", {}, [result])["results"]
+    assert found["entries"]["A"]["shares_per_s"] == pytest.approx(250000.0)
 
 
 def test_a_time_is_shown_in_its_unit() -> None:
