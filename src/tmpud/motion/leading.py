@@ -27,35 +27,37 @@ def leader(scene: Scene, route: Route, station: float) -> Obstacle | None:
     """Return the nearest vehicle ahead whose box reaches into the ego's way, within LOOK_AHEAD metres."""
     ego = scene.ego
     ahead = range(route.index(station), route.index(station + LOOK_AHEAD + ego.length) + 1)
-    rear, nearest = math.inf, None
+    rear, along, nearest = math.inf, 0.0, None
     for place, box in sorted(_near(scene, route, ahead)):
         if place * SPACING > rear + box.length:
             break  # nor do those that follow come before it
-        reached = _rear(box, route, ahead, place, station, ego.width / 2 + SIDE_ROOM)
+        reached, heading = _rear(box, route, ahead, place, station, ego.width / 2 + SIDE_ROOM)
         if reached < rear:
-            rear, nearest = reached, box
+            rear, along, nearest = reached, heading, box
     gap = rear - station - ego.length / 2
     if nearest is None or gap > LOOK_AHEAD:
         return None
-    along = route.poses[route.nearest(*_rim(nearest)[0], ahead, ahead.start)].heading
     return Obstacle(gap, max(nearest.speed * math.cos(nearest.heading - along), 0.0))
 
 
-def _rear(box: Body, route: Route, ahead: range, i: int, station: float, reach: float) -> float:
-    """Return the station at which a box begins to reach into the way [m]; inf where it keeps off, or is left behind.
+def _rear(box: Body, route: Route, ahead: range, i: int, station: float, reach: float) -> tuple[float, float]:
+    """Return the station at which a box begins to reach into the way [m], and the way's heading at its front left.
 
-    It is near to the route's i-th point.
+    The station is inf where the box keeps off, or is left behind. It is near to the route's i-th point.
     """
     rim = list[tuple[float, float]]()
+    nearest = list[int]()
     for x, y in _rim(box):
         i = route.nearest(x, y, ahead, i)
+        nearest.append(i)
         along, across = route.beside(x, y, i)
         rim.append((i * SPACING + along, across))
+    heading = route.poses[nearest[0]].heading
     stations, offsets = zip(*rim, strict=True)
     if max(stations) <= station or min(offsets) >= reach or max(offsets) <= -reach:
-        return math.inf
+        return math.inf, heading
     middle = sum(stations) / len(stations)
-    return min(s if abs(d) < reach else middle for s, d in rim)
+    return min(s if abs(d) < reach else middle for s, d in rim), heading
 
 
 def _near(scene: Scene, route: Route, ahead: range) -> list[tuple[int, Body]]:
