@@ -165,12 +165,20 @@ PEERS: dict[str, Peer] = {"libsumo": bare, WITH_EGO: with_ego, "stack (ours)": s
 def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--map", default="millbrook")
     parser.add_argument("--vehicles", type=int, default=200)
-    parser.add_argument("--steps", type=int, default=2000, help="of a mission, at most")
+    parser.add_argument("--steps", type=_steps, default=2000, help=f"of a mission, at most; {CHUNK} or more")
     parser.add_argument("--rounds", type=int, default=3, help="missions, each with its own seed")
 
 
 def measure(asked: argparse.Namespace) -> list[Result]:
     return [among(PEERS, WITH_EGO, asked)]
+
+
+def _steps(text: str) -> int:
+    if not text.isdecimal() or int(text) < CHUNK:
+        raise argparse.ArgumentTypeError(
+            f"{text} must be a whole number from {CHUNK} on, as peers take turns after {CHUNK}"
+        )
+    return int(text)
 
 
 def among(peers: Mapping[str, Peer], base: str, asked: argparse.Namespace) -> Result:
@@ -183,7 +191,7 @@ def among(peers: Mapping[str, Peer], base: str, asked: argparse.Namespace) -> Re
     times = {name: [row[name] for row, _ in rounds] for name in peers}
     facts = {**{name: vars(asked)[name] for name in ("map", "vehicles")}, "steps": [steps for _, steps in rounds]}
     title = f"a step of {asked.vehicles} vehicles on {asked.map}"
-    return Result(title, base, times, clock="CPU time, missions' means", facts=facts)
+    return Result(title, base, times, clock="CPU time, missions' means", facts=facts, batch=(1, "steps"))
 
 
 def spent(mission: Mission, steps: int, peers: Mapping[str, Peer]) -> tuple[dict[str, float], int]:

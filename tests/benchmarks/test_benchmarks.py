@@ -113,6 +113,12 @@ def test_a_planner_that_knows_nothing_of_the_last_estimate_is_caught(monkeypatch
         race(entries, questions)
 
 
+def test_too_few_steps_for_a_turn_are_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit, match="2"):
+        main(["full_step", "--steps", "200"])
+    assert "200 must be a whole number from 250 on" in capsys.readouterr().err
+
+
 def test_planning_by_steps_and_compiled_agree_with_the_planner_on_cut_lanes() -> None:
     graph = graph_of(load_map("millbrook", 60.0))
     questions = list(islice(draw(graph, random.Random(3), longest=6), 3))
