@@ -45,7 +45,7 @@ class Result:
     skipped: Mapping[str, str] = field(default_factory=dict)  # entry -> why
     clock: str = "CPU time"
     facts: Mapping[str, object] = field(default_factory=dict)  # what was measured: sizes, seeds, counts
-    batch: tuple[int, str] | None = None  # how many of what a round works out, where throughput is of interest
+    batch: tuple[int, str] | None = None  # how many of what one time is for, where throughput is of interest
 
     def median(self, name: str) -> float:
         return median(self.times[name])

@@ -19,7 +19,7 @@ seeds: [1, 2]
 
 
 def tmpud(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "tmpud.cli", *words]
+    command = [sys.executable, "-m", "tmpud", *words]
     return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
 
 
@@ -103,7 +103,7 @@ def test_the_figure_is_drawn_from_a_few_trials(tmp_path: Path) -> None:
 
 def test_an_interrupted_table_goes_on_where_it_stopped(tmp_path: Path) -> None:
     (tmp_path / "sweep.yaml").write_text(SWEEP.replace("[1, 2]", "[1, 2, 3, 4]"))
-    command = [sys.executable, "-m", "tmpud.cli", "sweep", "sweep.yaml", "--out", "run", "--jobs", "2"]
+    command = [sys.executable, "-m", "tmpud", "sweep", "sweep.yaml", "--out", "run", "--jobs", "2"]
     running = subprocess.Popen(
         command, cwd=tmp_path, stderr=subprocess.PIPE, text=True, start_new_session=True, preexec_fn=_heed_interrupts
     )

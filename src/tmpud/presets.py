@@ -7,6 +7,7 @@ differently from the text. ``docs/paper-to-code.md`` says where each field takes
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any, Literal, get_origin, get_type_hints
 
@@ -57,6 +58,37 @@ class Preset:
     pose: Literal["canonical", "sampled"] = "canonical"
     segment_length: float = 60.0  # [m] longest segment; inf: one segment per lane
 
+    def __post_init__(self) -> None:
+        """Raise ValueError for a value that makes no sense in its field."""
+        for field, (holds, sense) in _SENSE.items():
+            if not holds(getattr(self, field)):
+                raise ValueError(f"{field} is {getattr(self, field)}, and must be {sense}")
+        if self.turning == "steering" and max(map(abs, self.turning_range)) >= math.pi / 2:
+            raise ValueError(f"turning_range is {self.turning_range}, and must be within a right angle to steer by")
+
+
+Sense = tuple[Callable[[Any], bool], str]  # whether a value makes sense, and which do
+
+_MEASURE: Sense = (lambda value: 0 <= value < math.inf, "finite and not negative")
+_NOT_NEGATIVE: Sense = (lambda value: value >= 0, "not negative")
+_NUMBER: Sense = (lambda value: not math.isnan(value), "a number")
+_SENSE: dict[str, Sense] = {
+    **dict.fromkeys(("gamma", "turn_cost", "safety_distance", "closing_weight", "hysteresis"), _MEASURE),
+    **dict.fromkeys(("sensing_range", "neighbour_heading", "max_replans"), _NOT_NEGATIVE),
+    **dict.fromkeys(("gate", "gate_rate"), _NUMBER),
+    "samples": (lambda value: value >= 1, "at least 1"),
+    "margin": (math.isfinite, "finite"),
+    "acceleration": (lambda ends: -math.inf < ends[0] <= ends[1] < math.inf, "low/high, both finite"),
+    "turning_range": (
+        lambda ends: -math.inf < ends[0] < ends[1] < math.inf,
+        "low/high, finite and not one value",
+    ),
+    "horizon": (lambda value: value is None or 0 <= value < math.inf, "none, or finite and not negative"),
+    "interval": (lambda value: 0 < value < math.inf, "finite and positive"),
+    "ego_speeds": (lambda speeds: all(0 < speed < math.inf for speed in speeds), "finite and positive"),
+    "safe_expires": (lambda value: value is None or value >= 0, "none, or not negative"),
+    "segment_length": (lambda value: value > 0, "positive"),
+}
 
 TMPUD = Preset(name="tmpud")
 
@@ -112,7 +144,11 @@ def preset_named(text: str) -> Preset:
         raise RequestError(f"no preset is called {name!r}; there are {', '.join(PRESETS)}")
     if not changes:
         return PRESETS[name]
-    return replace(PRESETS[name], name=text, **dict(_change(text, change) for change in changes.split(",")))
+    fields = dict(_change(text, change) for change in changes.split(","))
+    try:
+        return replace(PRESETS[name], name=text, **fields)
+    except ValueError as error:
+        raise RequestError(f"preset {text!r}: {error}") from None
 
 
 def _change(preset: str, change: str) -> tuple[str, Any]:

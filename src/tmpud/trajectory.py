@@ -9,7 +9,7 @@ import numpy as np
 
 from tmpud.scene import ComplexArray, FloatArray, Vehicles
 
-STRAIGHT = 1e-20  # [rad/s] a yaw rate that nothing shows of
+STRAIGHT = 1e-20  # [rad/s] below it a vehicle drives straight on; keeps 0 / 0 away
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -44,14 +44,14 @@ class Prediction(NamedTuple):
 
 
 def predict(others: Vehicles, times: FloatArray) -> Prediction:
-    """Return what becomes of N vehicles that keep their speed v and yaw rate w (Alg. 1, line 3).
+    """Return where N vehicles are at times (T,) [s] if they keep their speed v and yaw rate w (Alg. 1, line 3).
 
     A velocity V = v e^(i heading) becomes V e^(iwt), and a place moves by its integral, V (e^(iwt) - 1) / (iw).
     """
     yaw_rate = others.yaw_rate.copy()
     yaw_rate[np.abs(yaw_rate) < STRAIGHT] = STRAIGHT
     velocity = others.speed * direction(others.heading)
-    tangent = np.tan((yaw_rate / 2)[:, None] * times)  # (N, T) of wt / 2; takes a third of the time of a sine
+    tangent = np.tan((yaw_rate / 2)[:, None] * times)  # (N, T) of wt / 2; quicker than a sine and a cosine
     sine = tangent / (1 + tangent * tangent)  # half of that of wt
     arc = points(sine, tangent * sine)  # (e^(iwt) - 1) / 2i
     moved = (2 * velocity / yaw_rate)[:, None] * arc

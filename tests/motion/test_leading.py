@@ -21,7 +21,8 @@ def beside(route: Route, rng: np.random.Generator) -> VehicleState:
     """Return a vehicle of any size and heading near the route."""
     x, y, _ = route.pose_at(rng.uniform(0.0, LOOK_AHEAD))
     pose = Pose(x + rng.uniform(-8, 8), y + rng.uniform(-8, 8), rng.uniform(-math.pi, math.pi))
-    return VehicleState("other", pose, "", length=rng.uniform(1.0, 15.0), width=rng.uniform(0.5, 2.5))
+    size = rng.uniform(1.0, 15.0), rng.uniform(0.5, 2.5)
+    return VehicleState("other", pose, "", 0.0, rng.uniform(0.0, 14.0), length=size[0], width=size[1])
 
 
 def car(x: float, y: float = 0.0, heading: float = 0.0, speed: float = 3.0, z: float = 0.0) -> VehicleState:
@@ -72,6 +73,16 @@ def test_who_reaches_into_the_way_is_followed(other: VehicleState, gap: float) -
     found = followed(other, x=100.0) if other.pose.x > 100 else followed(other)
     assert found is not None
     assert found.gap == pytest.approx(gap, abs=0.3)
+
+
+def test_in_a_turn_the_way_where_the_vehicle_is_counts() -> None:
+    route = turn_left()
+    here, there = route.pose_at(30.0), route.pose_at(66.0)
+    assert abs(there.heading - here.heading) > 1.0
+    ego, turned = VehicleState("ego", here, ""), VehicleState("a", there, "", speed=6.0)
+    found = leader(Scene(0.0, ego, Vehicles.of([turned]), {}), route, 30.0)
+    assert found is not None
+    assert found.speed == pytest.approx(6.0, abs=0.1)
 
 
 def test_only_the_speed_along_the_route_counts() -> None:

@@ -8,8 +8,9 @@ from hypothesis import strategies as st
 
 from tests.motion.routes import ROADS, ROUTE, WAY, straight, turn_left
 from tmpud.dynamics import EGO
+from tmpud.geometry import Polyline
 from tmpud.motion.path import Follow
-from tmpud.motion.route import SPACING, Route, build_route
+from tmpud.motion.route import COMFORTABLE_BRAKING, SPACING, Route, _braked, _points_at, build_route
 
 
 @pytest.mark.parametrize("route", [straight(), turn_left()], ids=["straight", "left"])
@@ -23,6 +24,24 @@ def test_the_speed_limit_keeps_lateral_acceleration_and_braking_within_reach(rou
     assert route.speed_limit.max() <= EGO.max_speed + 1e-9
     braking = (route.speed_limit[:-1] ** 2 - route.speed_limit[1:] ** 2) / (2 * 0.5)
     assert braking.max() <= 2.0 + 1e-6
+
+
+def test_speeds_fall_towards_a_slower_place_by_comfortable_braking_and_no_sooner() -> None:
+    allowed = np.random.default_rng(1).uniform(0.5, 14.0, 400)
+    expected = allowed.copy()
+    for i in range(len(expected) - 2, -1, -1):
+        expected[i] = min(expected[i], math.sqrt(expected[i + 1] ** 2 + 2 * COMFORTABLE_BRAKING * SPACING))
+    assert _braked(allowed) == pytest.approx(expected, rel=1e-12)
+
+
+@given(st.lists(st.tuples(st.floats(-50, 50), st.floats(-50, 50)), min_size=2, max_size=8, unique=True))
+def test_many_points_of_a_line_are_those_of_its_poses(points: list[tuple[float, float]]) -> None:
+    try:
+        line = Polyline(points)
+    except ValueError:
+        return
+    stations = np.array([0.0, *np.linspace(0.0, line.length, 7), *line.stations])
+    assert _points_at(line, stations).tolist() == [list(line.pose_at(s)[:2]) for s in stations.tolist()]
 
 
 def test_a_slower_road_is_obeyed_from_where_it_begins() -> None:

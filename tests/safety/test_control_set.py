@@ -67,7 +67,7 @@ def test_a_standing_ego_cannot_turn_away() -> None:
     assert half_plane(index, ego, TMPUD, 2.8).by_turning[0, 0] == 0.0
 
 
-@pytest.mark.parametrize("preset", [TMPUD, RELEASED_EXACT])
+@pytest.mark.parametrize("preset", [TMPUD, RELEASED_EXACT, replace(TMPUD, safety_distance=0.5)])
 def test_a_vehicle_in_the_same_place_leaves_no_control(preset: Preset) -> None:
     index, ego = index_of(scene(car(20, 0, speed=3.0)), preset)
     plane = half_plane(index, ego, preset, 2.8)

@@ -148,16 +148,6 @@ def test_a_trajectory_that_is_not_finite_is_refused() -> None:
         estimate(scene(), motion=FakeMotion(curvature=math.nan))
 
 
-def test_ranges_that_are_none_are_refused() -> None:
-    for preset in (
-        replace(TMPUD, turning_range=(0.1, 0.1)),
-        replace(TMPUD, turning_range=(-1.6, 1.6)),
-        replace(TMPUD, acceleration=(3.0, -6.0)),
-    ):
-        with pytest.raises(ValueError, match="must be"):
-            SafeSetEstimator(preset, FakeMotion(), NETWORK)
-
-
 def test_an_estimate_depends_on_its_inputs_only() -> None:
     where = scene(car(28, 3.2, speed=2.0), car(12, 3.2, speed=7.0))
     assert np.array_equal(estimate(where, PAPER).o, estimate(where, PAPER).o)

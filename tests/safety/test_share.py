@@ -42,6 +42,14 @@ def test_controls_without_effect_are_all_safe_or_all_unsafe(controls: Controls) 
     assert share(-np.inf, 0.0, 0.0, controls) == 0.0
 
 
+@pytest.mark.parametrize("turning", [(-0.47, 0.47), (-0.6, 0.47), (-0.6, -0.47), (-0.47, 0.6), (0.1, 1.2)])
+@pytest.mark.parametrize("steering", [True, False])
+def test_all_and_nothing_are_exactly_one_and_zero(turning: tuple[float, float], steering: bool) -> None:
+    for by_turning in (-7.0, 0.0, 7.0):
+        assert share(-1e3, 1.0, by_turning, Controls((-6.0, 3.0), turning, steering)) == 0.0
+        assert share(1e3, 1.0, by_turning, Controls((-6.0, 3.0), turning, steering)) == 1.0
+
+
 def test_an_acceleration_range_of_one_value_is_judged_by_turning_alone() -> None:
     assert share(2.0, 1.0, 1.0, Controls((2.0, 2.0), (-0.1, 0.3), steering=False)) == pytest.approx(0.25)
 

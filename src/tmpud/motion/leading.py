@@ -27,37 +27,34 @@ def leader(scene: Scene, route: Route, station: float) -> Obstacle | None:
     """Return the nearest vehicle ahead whose box reaches into the ego's way, within LOOK_AHEAD metres."""
     ego = scene.ego
     ahead = range(route.index(station), route.index(station + LOOK_AHEAD + ego.length) + 1)
-    rear, along, nearest = math.inf, 0.0, None
+    rear, speed = math.inf, 0.0
     for place, box in sorted(_near(scene, route, ahead)):
         if place * SPACING > rear + box.length:
             break  # nor do those that follow come before it
-        reached, heading = _rear(box, route, ahead, place, station, ego.width / 2 + SIDE_ROOM)
-        if reached < rear:
-            rear, along, nearest = reached, heading, box
+        found = _reached(box, route, ahead, place, station, ego.width / 2 + SIDE_ROOM)
+        if found and found[0] < rear:
+            rear, speed = found
     gap = rear - station - ego.length / 2
-    if nearest is None or gap > LOOK_AHEAD:
-        return None
-    return Obstacle(gap, max(nearest.speed * math.cos(nearest.heading - along), 0.0))
+    return Obstacle(gap, speed) if gap <= LOOK_AHEAD else None
 
 
-def _rear(box: Body, route: Route, ahead: range, i: int, station: float, reach: float) -> tuple[float, float]:
-    """Return the station at which a box begins to reach into the way [m], and the way's heading at its front left.
+def _reached(box: Body, route: Route, ahead: range, i: int, station: float, reach: float) -> tuple[float, float] | None:
+    """Return the station at which a box begins to reach into the way [m], and its speed along the way [m/s].
 
-    The station is inf where the box keeps off, or is left behind. It is near to the route's i-th point.
+    None where it keeps off, or is left behind. The box is near to the route's i-th point.
     """
-    rim = list[tuple[float, float]]()
-    nearest = list[int]()
+    nearest, rim = list[int](), list[tuple[float, float]]()
     for x, y in _rim(box):
         i = route.nearest(x, y, ahead, i)
-        nearest.append(i)
         along, across = route.beside(x, y, i)
+        nearest.append(i)
         rim.append((i * SPACING + along, across))
-    heading = route.poses[nearest[0]].heading
     stations, offsets = zip(*rim, strict=True)
     if max(stations) <= station or min(offsets) >= reach or max(offsets) <= -reach:
-        return math.inf, heading
+        return None
     middle = sum(stations) / len(stations)
-    return min(s if abs(d) < reach else middle for s, d in rim), heading
+    turned = box.heading - route.poses[nearest[0]].heading
+    return min(s if abs(d) < reach else middle for s, d in rim), max(box.speed * math.cos(turned), 0.0)
 
 
 def _near(scene: Scene, route: Route, ahead: range) -> list[tuple[int, Body]]:

@@ -78,11 +78,10 @@ class SafeSets(NamedTuple):
 def safety_index(ego: Trajectory, others: Vehicles, predicted: Prediction, preset: Preset) -> SafetyIndex:
     """Return the index of every predicted vehicle at every instant of the ego's trajectory."""
     dp = ego.places - predicted.places
-    d = np.abs(dp)
-    touching = d < TOUCHING
-    d[touching] = 1.0
+    distance = np.abs(dp)
+    d = np.maximum(distance, TOUCHING)
     pushing = _inner(direction(ego.poses[:, 2]), dp)  # dp.e and dp.n
-    own, theirs = ego.speeds * pushing, _inner(predicted.velocities, dp)
+    own, theirs = ego.speeds * pushing, _inner(predicted.velocities, dp)  # the same with v_E e, and with v_i
     moving = own - theirs  # dp.dv = d d', and dv x dp
     d_dot, swing, weight = moving.real / d, moving.imag / d, -preset.closing_weight / d
     turning_i = theirs.imag * others.yaw_rate[:, None]  # dp.a_i
@@ -93,7 +92,7 @@ def safety_index(ego: Trajectory, others: Vehicles, predicted: Prediction, prese
         by_acceleration=weight * pushing.real,
         by_yaw_rate=weight * own.imag,
     )
-    index.drift[touching] = np.inf
+    index.drift[distance < TOUCHING] = np.inf
     return index
 
 
@@ -115,14 +114,8 @@ def half_plane(index: SafetyIndex, ego: Trajectory, preset: Preset, wheelbase: f
 
 
 def controls(preset: Preset) -> Controls:
-    """Return the preset's Delta x Theta; raises ValueError for ranges without the sense ``Controls`` needs."""
-    (low_a, high_a), (low, high) = preset.acceleration, preset.turning_range
-    steering = preset.turning == "steering"
-    if not low_a <= high_a:
-        raise ValueError(f"acceleration {preset.acceleration} must be (low, high)")
-    if not low < high or (steering and not max(-low, high) < np.pi / 2):
-        raise ValueError(f"turning_range {preset.turning_range} must be (low, high), steering within a right angle")
-    return Controls(preset.acceleration, preset.turning_range, steering)
+    """Return the preset's Delta x Theta."""
+    return Controls(preset.acceleration, preset.turning_range, preset.turning == "steering")
 
 
 def _inner(a: ComplexArray, b: ComplexArray) -> ComplexArray:

@@ -44,7 +44,6 @@ class SafeSetEstimator:
     def __init__(
         self, preset: Preset, motion: MotionPlanner, network: RoadNetwork, limits: VehicleLimits = EGO
     ) -> None:
-        """Raise ValueError where the preset's Delta or Theta is not a range."""
         self._preset, self._motion, self._network, self._limits = preset, motion, network, limits
         self._controls = control_set.controls(preset)
 

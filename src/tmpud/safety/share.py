@@ -24,8 +24,8 @@ def exact_share(plane: HalfPlane, controls: Controls) -> FloatArray:
     Where neither control has an effect, it is 1 or 0 as the limit is met or not.
     """
     low_a, high_a = controls.acceleration
-    low, high = _mirrored(controls.turning, plane.by_turning)
     least, most = _mirrored(controls.effects, plane.by_turning)
+    low, high = (np.arctan(least), np.arctan(most)) if controls.steering else (least, most)  # as ``turn`` is worked out
     middle = plane.limit - plane.by_acceleration * ((low_a + high_a) / 2)
     reach = np.abs(plane.by_acceleration) * ((high_a - low_a) / 2)
     slack, slope = middle + reach, np.abs(plane.by_turning)

@@ -221,7 +221,7 @@ def heard() -> Iterator[None]:
 @pytest.mark.usefixtures("heard")
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_an_interrupt_leaves_no_worker_and_loses_nothing(tmp_path: Path, number: signal.Signals) -> None:
-    todo = [*tasks(3), *tasks(8, seconds=30.0, group=1)[4:]]
+    todo, before = [*tasks(3), *tasks(8, seconds=30.0, group=1)[4:]], children()
     seen: list[Record] = []
 
     def collect() -> None:
@@ -234,7 +234,7 @@ def test_an_interrupt_leaves_no_worker_and_loses_nothing(tmp_path: Path, number:
         collect()
     assert {record.key for record in read_results(tmp_path).records} == {record.key for record in seen}
     assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
-    assert children() == set()
+    assert children() <= before  # other tests may have left some
 
 
 class Struck:
@@ -252,7 +252,7 @@ class Struck:
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 @pytest.mark.parametrize("left", [5, 0])
 def test_an_interrupt_that_python_drops_is_not_lost(tmp_path: Path, number: signal.Signals, left: int) -> None:
-    campaign, seen = run(tmp_path, tasks(6), jobs=1, recycle_after=1), list[Record]()
+    campaign, seen, before = run(tmp_path, tasks(6), jobs=1, recycle_after=1), list[Record](), children()
 
     def collect() -> None:
         for record in campaign:
@@ -263,7 +263,7 @@ def test_an_interrupt_that_python_drops_is_not_lost(tmp_path: Path, number: sign
     with pytest.raises(KeyboardInterrupt):
         collect()
     assert len(seen) <= 6 - left + 1
-    assert children() == set()
+    assert children() <= before  # other tests may have left some
 
 
 def children() -> set[str]:

@@ -1,5 +1,0 @@
-"""``python -m tmpud.cli``."""
-
-from tmpud.cli import main
-
-main()
