@@ -8,6 +8,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -17,7 +18,8 @@ from tmpud.errors import SimulatorError, SimulatorHangError
 from tmpud.roads import load_map
 from tmpud.roads.network import RoadNetwork
 from tmpud.scene import Control
-from tmpud.simulators.carla.session import Address
+from tmpud.simulators.carla.messages import Message
+from tmpud.simulators.carla.session import Address, Session
 from tmpud.simulators.carla.simulator import CarlaSimulator
 from tmpud.simulators.carla.turns import turn
 
@@ -77,6 +79,29 @@ def test_a_server_that_dies_is_an_error_with_its_reason(start: Start, server: Lo
     drive.close()
 
 
+@pytest.mark.parametrize("crashes", [1, 2])
+def test_a_client_that_crashes_over_a_map_is_followed_by_one_more(
+    start: Start, server: Loopback, monkeypatch: pytest.MonkeyPatch, crashes: int
+) -> None:
+    ask, loads = Session.ask, list[int]()
+
+    def fatal(session: Session, name: str, limit: float, /, **arguments: Any) -> Message:
+        if name == "load":
+            loads.append(session.process)
+            if len(loads) <= crashes:
+                os.kill(session.process, signal.SIGSEGV)
+        return ask(session, name, limit, **arguments)
+
+    monkeypatch.setattr(Session, "ask", fatal)
+    if crashes == 1:
+        assert_drives(start())
+    else:
+        with pytest.raises(SimulatorError, match="the client ended with -11 when asked to 'load'"):
+            start()
+    assert len(set(loads)) == 2
+    assert server.report()["actors"].get("vehicle", 0) == (CARS + 1 if crashes == 1 else 0)
+
+
 def test_a_server_that_freezes_is_an_error_of_its_own(start: Start, server: Loopback) -> None:
     drive = start()
     server.arm(freeze_at=5)
@@ -117,7 +142,8 @@ def test_a_client_killed_between_two_steps_is_tidied_after_when_the_drive_is_clo
 ABANDONED = """
 import os, signal, sys
 from tmpud.roads import load_map
-from tmpud.simulators.carla.session import Address
+from tmpud.simulators.carla.messages import Message
+from tmpud.simulators.carla.session import Address, Session
 from tmpud.simulators.carla.simulator import CarlaSimulator
 drive = CarlaSimulator(load_map(sys.argv[1]), traffic=4, seed=1, server=Address(port=int(sys.argv[2])), warm_up=0.0)
 drive.reset("a_0", 30.0)

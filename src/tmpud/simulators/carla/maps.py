@@ -9,7 +9,7 @@ from pathlib import Path
 from tmpud.errors import MapError
 from tmpud.roads.cache import cache_folder
 from tmpud.roads.loading import map_file
-from tmpud.simulators.carla.session import LOADED, Address, Session
+from tmpud.simulators.carla.session import Address, Session
 
 
 def fetch(server: Address, name: str) -> str:
@@ -21,7 +21,7 @@ def fetch(server: Address, name: str) -> str:
         map_file(name)
         return name
     with contextlib.closing(Session(server)) as session:
-        text: str = session.ask("map", LOADED, name=name).words["xodr"]
+        text: str = session.load("map", name=name).words["xodr"]
     file = (cache_folder() or Path(tempfile.gettempdir())) / "carla" / f"{name.rsplit('/', 1)[-1]}.xodr"
     file.parent.mkdir(parents=True, exist_ok=True)
     file.write_text(text, encoding="utf-8")

@@ -46,8 +46,12 @@ class Session:
 
     def __init__(self, server: Address) -> None:
         """Connect; SimulatorError without client or server, or where their versions differ."""
-        _look_for(server)
         self._server = server
+        self._connect()
+
+    def _connect(self) -> None:
+        server = self._server
+        _look_for(server)
         self._found: dict[str, Any] | None = None  # the settings to leave behind, once they may have been changed
         self._start()
         try:
@@ -59,6 +63,7 @@ class Session:
         self._found = told.words["found"]
 
     def _start(self) -> None:
+        self._crashed = False
         here, there = Pipe()
         self._log = tempfile.TemporaryFile()  # noqa: SIM115  closed with the process
         command = [sys.executable, "-P", "-m", "tmpud.simulators.carla.child", str(there.fileno())]
@@ -97,6 +102,16 @@ class Session:
             raise self._refused(name, answer.words["error"])
         return answer
 
+    def load(self, name: str, /, **arguments: Any) -> Message:
+        """Ask for what loads a map. Where the client crashes, as 0.9.16 does now and then, another process is asked."""
+        try:
+            return self.ask(name, LOADED, **arguments)
+        except SimulatorError:
+            if not self._crashed:
+                raise
+        self._connect()
+        return self.ask(name, LOADED, **arguments)
+
     def step(self, acceleration: float, steering: float) -> Message:
         """Take one step."""
         return self.ask("step", self.patience + MARGIN, acceleration=acceleration, steering=steering)
@@ -113,6 +128,7 @@ class Session:
         with contextlib.suppress(subprocess.TimeoutExpired):
             self._process.wait(MARGIN)
         code, said = self._process.poll(), self._last_words()
+        self._crashed = code is not None and code < 0  # by a signal
         self._end()
         if asked == "connect":
             return self._fault(f"whoever listens there is no CARLA server: the client ended with {code}: {said}")

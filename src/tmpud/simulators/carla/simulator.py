@@ -49,7 +49,7 @@ class CarlaSimulator(Closing):
         self._session = Session(server or Address())
         words = {"speed": rules.wished_speed, "spread": rules.spread, "min_gap": rules.min_gap}
         try:
-            self._take(self._session.ask("load", LOADED, name=network.name, seed=seed, traffic=traffic, rules=words))
+            self._take(self._session.load("load", name=network.name, seed=seed, traffic=traffic, rules=words))
             for _ in range(round(warm_up / DT / CHUNK)):
                 self._take(self._session.ask("warm_up", 2 * (self._session.patience + MARGIN), steps=CHUNK))
         except SimulatorError:
