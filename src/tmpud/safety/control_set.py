@@ -28,7 +28,7 @@ TOUCHING = 1e-6  # [m] centres closer than this have no direction between them: 
 class SafetyIndex(NamedTuple):
     """phi, and phi' as an affine function of the ego's control; each field of shape (N, T)."""
 
-    phi: FloatArray  # [m^2]
+    phi: FloatArray  # [m^2]; D^2 where d < TOUCHING
     drift: FloatArray  # [m^2/s] phi' of an ego that neither accelerates nor turns; inf where d < TOUCHING
     by_acceleration: FloatArray  # [m^2/s per m/s^2] c_a
     by_yaw_rate: FloatArray  # [m^2/s per rad/s] c_w
@@ -76,7 +76,7 @@ class SafeSets(NamedTuple):
 
 
 def safety_index(ego: Trajectory, others: Vehicles, predicted: Prediction, preset: Preset) -> SafetyIndex:
-    """Return the index of every predicted vehicle at every instant of the ego's trajectory."""
+    """Return the index (N, T) of every predicted vehicle at every instant of the ego's trajectory."""
     dp = ego.places - predicted.places
     distance = np.abs(dp)
     d = np.maximum(distance, TOUCHING)
@@ -92,7 +92,8 @@ def safety_index(ego: Trajectory, others: Vehicles, predicted: Prediction, prese
         by_acceleration=weight * pushing.real,
         by_yaw_rate=weight * own.imag,
     )
-    index.drift[distance < TOUCHING] = np.inf
+    touching = distance < TOUCHING
+    index.phi[touching], index.drift[touching] = preset.safety_distance**2, np.inf
     return index
 
 
