@@ -11,10 +11,11 @@ from pathlib import Path
 
 from tests.server.asking import Served, served
 from tmpud.recording import LOG
+from tmpud.server.index import KEPT
 
 CLIENTS = 50
 DRIVE = (
-    sys.executable, "-c", "from tmpud.cli import main; main()", "drive", "--from", "park1e_0", "--to", "park2e_1",
+    sys.executable, "-c", "from tmpud.cli import main; main()", "drive", "--from", "park1e_0", "--to", "high4n",
     "--traffic", "5", "--seed", "3", "--json", "--out",
 )  # fmt: skip
 
@@ -24,12 +25,13 @@ def drive(folder: Path) -> bytes:
     return (folder / LOG).read_bytes()
 
 
-def follow(server: Served, ended: threading.Event, statuses: Counter[int]) -> None:
-    """Do what the pages do, but without waiting a second in between."""
+def follow(server: Served, ended: threading.Event, statuses: Counter[int], links: list[str]) -> None:
+    """Do what the pages do, but without waiting a second in between; note where the drive was found under way."""
     link = ""
     while not ended.is_set():
         try:
-            link = link or server.link("live/run")
+            if not link:
+                links.append(link := server.link("live/run"))
             paths = ["", "list", f"{link}/part", f"{link}/replay"]
         except LookupError:
             paths = [""]
@@ -40,16 +42,18 @@ def follow(server: Served, ended: threading.Event, statuses: Counter[int]) -> No
 def test_fifty_clients_change_nothing_of_a_drive(tmp_path: Path) -> None:
     alone = drive(tmp_path / "alone" / "run")
     (tmp_path / "live").mkdir()
-    ended, statuses = threading.Event(), Counter[int]()
+    ended, statuses, links = threading.Event(), Counter[int](), list[str]()
     with served(tmp_path / "live") as server:
-        clients = [threading.Thread(target=follow, args=(server, ended, statuses)) for _ in range(CLIENTS)]
+        clients = [threading.Thread(target=follow, args=(server, ended, statuses, links)) for _ in range(CLIENTS)]
         for client in clients:
             client.start()
-        followed = drive(tmp_path / "live" / "run")
+        followed, under_way = drive(tmp_path / "live" / "run"), len(links)
         ended.set()
         for client in clients:
             client.join()
+        time.sleep(KEPT)  # until the list is made anew
         assert "SUCCESS" in server.part("live/run")
     assert followed == alone
+    assert under_way > 0
     assert set(statuses) <= {200, 404}  # no replay before the log's first block is written
     assert statuses[200] >= CLIENTS
