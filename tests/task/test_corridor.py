@@ -7,7 +7,7 @@ import pytest
 from tests.task.agreement import Case, random_case
 from tests.task.tiny_roads import driven, grid, request
 from tmpud.presets import TMPUD
-from tmpud.symbols import OptimisticSafe, State
+from tmpud.symbols import OptimisticSafe, State, Transition
 from tmpud.task.corridor import Search, backward_tree, corridor, whole_map
 from tmpud.task.domain import Domain
 from tmpud.task.facts import REDUCED, choices, encoding, facts, spelled
@@ -21,7 +21,7 @@ def search_of(case: Case, state: State) -> tuple[Domain, Search]:
     tree = backward_tree(domain, case.preset, case.cost)
     case.change(state)
     utility = Utility(case.preset, case.cost, case.safe, tree.floor)
-    return domain, Search(domain.successors, utility.rank, tree.distance, domain.last)
+    return domain, Search(tree.out_of, utility, domain.last)
 
 
 @pytest.mark.parametrize("seed", range(60))
@@ -29,7 +29,7 @@ def test_the_corridor_holds_every_optimal_plan_of_the_whole_map(seed: int) -> No
     case = random_case(random.Random(seed))
     state = State(case.request.start.segments[0], 0)
     domain, search = search_of(case, state)
-    found, everything = corridor(search, state), whole_map(search, state)
+    found, everything = corridor(search, state), whole_map(domain, search.utility, state)
     weights = {transition: split(rank)[0] for transition, rank in everything.ranks.items()}
     answer = ask(written(encoding() + facts(domain, state, weights), {spelled(step): (step,) for step in weights}))
     assert (found is None) == (answer.union == ())
@@ -78,14 +78,40 @@ def test_stretches_hold_each_transition_once_and_leave_every_choice_between_them
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_the_kept_bounds_are_consistent_after_the_weights_changed(seed: int) -> None:
+def test_the_kept_ways_are_lower_bounds_after_the_weights_changed(seed: int) -> None:
     case = random_case(random.Random(seed))
     domain, search = search_of(case, State(case.request.start.segments[0], 0))
-    for segment in case.network.segments:
-        for transition in domain.successors(State(segment, 0)):
-            here = search.bound.get(transition.state, FORBIDDEN)
-            there = search.bound.get(transition.next_state, FORBIDDEN)
-            assert here <= search.rank(transition) + there
+    for state in (State(segment, leg) for segment in case.network.segments for leg in range(domain.last)):
+        ways = search.ways(state)
+        assert [way.through for way in ways] == sorted(way.through for way in ways)
+        through = {way.transition: way.through for way in ways}
+        for transition in domain.successors(state):
+            rank, onward = search.utility.rank(transition), bound(domain, search, transition.next_state)
+            assert through.get(transition, FORBIDDEN) <= rank + onward
+
+
+def bound(domain: Domain, search: Search, state: State) -> int:
+    if domain.is_goal(state):
+        return 0
+    return min((way.through for way in search.ways(state)), default=FORBIDDEN)
+
+
+def test_most_ways_are_never_weighed() -> None:
+    roads = grid(6, random.Random(1))
+    domain = Domain(roads, request("0.0-E_0/0", "5.5-W_1/1"))
+    cost = driven(roads)
+    tree = backward_tree(domain, TMPUD, cost)
+    weighed = Counter[Transition]()
+
+    class Watched(dict[Transition, float]):
+        def __getitem__(self, transition: Transition) -> float:
+            weighed[transition] += 1
+            return cost[transition]
+
+    utility = Utility(TMPUD, Watched(), OptimisticSafe(), tree.floor)
+    found = corridor(Search(tree.out_of, utility, domain.last), domain.start_state())
+    assert found is not None
+    assert weighed == Counter(list(found.ranks))
 
 
 def test_the_corridor_of_a_town_is_a_small_part_of_it() -> None:
@@ -93,7 +119,7 @@ def test_the_corridor_of_a_town_is_a_small_part_of_it() -> None:
     domain = Domain(roads, request("0.0-E_0/0", "5.5-W_1/1"))
     tree = backward_tree(domain, TMPUD, driven(roads))
     utility = Utility(TMPUD, driven(roads), OptimisticSafe(), tree.floor)
-    search = Search(domain.successors, utility.rank, tree.distance, domain.last)
+    search = Search(tree.out_of, utility, domain.last)
     found = corridor(search, domain.start_state())
     assert found is not None
-    assert 20 * len(found.ranks) < len(whole_map(search, domain.start_state()).ranks)
+    assert 20 * len(found.ranks) < len(whole_map(domain, utility, domain.start_state()).ranks)

@@ -7,7 +7,7 @@ from dataclasses import replace
 from heapq import heappop, heappush
 
 from tmpud.symbols import State, TaskPlan, Transition
-from tmpud.task.corridor import Search, corridor
+from tmpud.task.corridor import Search, Way, corridor
 from tmpud.task.ties import Taste, taste, walk
 
 Ranked = tuple[int, tuple[Taste, ...], TaskPlan]  # two different plans never compare equal before the third item
@@ -39,12 +39,14 @@ def _branches(search: Search, plan: TaskPlan, plans: Sequence[TaskPlan]) -> Iter
 def _without(search: Search, taken: set[Transition], visited: set[State]) -> Search:
     """Return the same graph less some transitions and states."""
 
-    def successors(state: State) -> Iterator[Transition]:
-        for transition in search.successors(state):
-            if transition not in taken and transition.next_state not in visited:
-                yield transition
+    def ways(state: State) -> list[Way]:
+        return [
+            way
+            for way in search.ways(state)
+            if way.transition not in taken and way.transition.next_state not in visited
+        ]
 
-    return replace(search, successors=successors)
+    return replace(search, ways=ways)
 
 
 def _best(search: Search, root: TaskPlan, start: State) -> Iterator[Ranked]:
@@ -52,4 +54,4 @@ def _best(search: Search, root: TaskPlan, start: State) -> Iterator[Ranked]:
     found = corridor(search, start)
     if found is not None:
         plan = root + walk(start, found.optimal_transitions())
-        yield sum(map(search.rank, plan)), tuple(map(taste, plan)), plan
+        yield sum(map(search.utility.rank, plan)), tuple(map(taste, plan)), plan

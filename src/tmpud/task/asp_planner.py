@@ -111,10 +111,11 @@ class AspPlanner:
 
     def instance(self, state: State, request: ServiceRequest, cost: Cost, safe: Safe) -> str:
         """Return the facts that, with the package's .lp files, make plain ``clingo`` find the same optimum."""
-        search, _ = self._search(state, request, cost, safe)
-        given = corridor(search, state) if self._prover.prune else whole_map(search, state)
+        search, utility = self._search(state, request, cost, safe)
+        domain = self._memory[request].domain
+        given = corridor(search, state) if self._prover.prune else whole_map(domain, utility, state)
         weights = {transition: split(rank)[0] for transition, rank in given.ranks.items()} if given else {}
-        return facts(self._memory[request].domain, state, weights)
+        return facts(domain, state, weights)
 
     def alternatives(
         self, state: State, request: ServiceRequest, cost: Cost, safe: Safe, count: int
@@ -131,7 +132,7 @@ class AspPlanner:
         memory = self._recall(request, cost)
         memory.domain.check(state)
         utility = Utility(self.preset, cost, safe, memory.tree.floor)
-        search = Search(memory.domain.successors, utility.rank, memory.tree.distance, memory.domain.last)
+        search = Search(memory.tree.out_of, utility, memory.domain.last)
         return search, utility
 
     def _recall(self, request: ServiceRequest, cost: Cost) -> _Memory:

@@ -7,9 +7,11 @@ of that rank is left out. No optimal plan is lost, ties included.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections import defaultdict
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from heapq import heappop, heappush
+from typing import NamedTuple
 
 from tmpud.presets import Preset
 from tmpud.symbols import Cost, OptimisticSafe, State, Transition
@@ -17,12 +19,24 @@ from tmpud.task.domain import Domain
 from tmpud.task.utility import FORBIDDEN, Utility, split
 
 
+class Way(NamedTuple):
+    """A transition, and what the first weights say of it."""
+
+    through: int  # rank of the best way to the goal that begins with it
+    rank: int
+    cost: float  # [m]
+    transition: Transition
+
+
 @dataclass(frozen=True, slots=True)
 class Tree:
-    """The first weights, and the distances from every state to the goal under them."""
+    """The first weights, and the ways to the goal from every state under them."""
 
     floor: dict[Transition, float]  # [m] the first Cost of each transition
-    distance: dict[State, int]  # rank of the best way to the goal; a state without one has no way to it
+    ways: dict[State, list[Way]]  # those out of a state that lead to the goal, the best first
+
+    def out_of(self, state: State) -> Sequence[Way]:
+        return self.ways.get(state, ())
 
     def bounds(self, cost: Cost) -> bool:
         """Whether no Cost is below its first value."""
@@ -31,11 +45,10 @@ class Tree:
 
 @dataclass(frozen=True, slots=True)
 class Search:
-    """A graph to find plans in."""
+    """A graph to find plans in, and its present weights."""
 
-    successors: Callable[[State], Iterable[Transition]]
-    rank: Callable[[Transition], int]
-    bound: Mapping[State, int]  # lower bounds of the distances to the goal; no goal without one
+    ways: Callable[[State], Sequence[Way]]  # out of a state; their order and first weights are as in a Tree
+    utility: Utility
     last: int  # the leg of the goal states
 
 
@@ -94,6 +107,7 @@ class Corridor:
 def backward_tree(domain: Domain, preset: Preset, cost: Cost) -> Tree:
     """Return the tree of best ways to the goal under Cost and Safe = 1 (Dijkstra)."""
     floor: dict[Transition, float] = {}
+    ways: dict[State, list[Way]] = {}
     first = Utility(preset, cost, OptimisticSafe(), floor)
     distance = dict.fromkeys(domain.goal_states(), 0)
     queue = [(0, state) for state in distance]
@@ -102,53 +116,71 @@ def backward_tree(domain: Domain, preset: Preset, cost: Cost) -> Tree:
         if here > distance[state]:
             continue
         for transition in domain.predecessors(state):
+            if transition in floor:
+                continue
             floor[transition] = cost[transition]
-            there = here + first.rank(transition)
-            if there < min(distance.get(transition.state, FORBIDDEN), FORBIDDEN):
-                distance[transition.state] = there
-                heappush(queue, (there, transition.state))
-    return Tree(floor, distance)
+            rank = first.rank(transition)
+            if rank < FORBIDDEN:
+                there = here + rank
+                ways.setdefault(transition.state, []).append(Way(there, rank, floor[transition], transition))
+                if there < distance.get(transition.state, FORBIDDEN):
+                    distance[transition.state] = there
+                    heappush(queue, (there, transition.state))
+    for row in ways.values():
+        row.sort()
+    return Tree(floor, ways)
 
 
 def corridor(search: Search, start: State, limit: int | None = None) -> Corridor | None:
     """Return the transitions t with distance + rank(t) + bound <= limit (A*); None where no plan exists.
 
-    The limit is by default the rank of the best plan.
+    The limit is by default the rank of the best plan. Of a state's ways each waits for its turn, with what a plan over
+    it costs at least (partial expansion, Yoshizumi et al. 2000): most are never looked at.
     """
-    distance, touched = {start: 0}, list[tuple[int, int, Transition]]()
-    successors, rank_of, bound = search.successors, search.rank, search.bound
-    optimum, widest = FORBIDDEN, FORBIDDEN - 1 if limit is None else limit
-    queue, done = [(bound.get(start, FORBIDDEN), start)], set[State]()
-    while queue and queue[0][0] <= widest:
-        estimate, state = heappop(queue)
-        if state in done:
-            continue
-        done.add(state)
-        if state.leg == search.last:
-            optimum = distance[state] = min(optimum, estimate)
-            widest = optimum if limit is None else limit
-            continue
-        here = distance[state]
-        for transition in successors(state):
-            rank, following = rank_of(transition), transition.next_state
-            there = here + rank
-            onward = there + bound.get(following, FORBIDDEN)
-            if onward <= widest:
-                touched.append((onward, rank, transition))
-                if there < distance.get(following, FORBIDDEN):
-                    distance[following] = there
-                    heappush(queue, (onward, following))
+    utility, last = search.utility, search.last
+    distance, goals, touched = {start: 0}, list[State](), list[tuple[int, int, Transition]]()
+    optimum, widest = FORBIDDEN if start.leg < last else 0, FORBIDDEN - 1 if limit is None else limit
+    waiting, estimates = defaultdict[int, list[tuple[int, State, Sequence[Way], int]]](list), list[int]()
+
+    def wait(here: int, state: State, ways: Sequence[Way], n: int) -> None:
+        if n < len(ways):
+            estimate = here + ways[n].through
+            if estimate not in waiting:
+                heappush(estimates, estimate)
+            waiting[estimate].append((here, state, ways, n))
+
+    wait(0, start, search.ways(start), 0)
+    while estimates and (estimate := heappop(estimates)) <= widest:
+        for here, state, ways, n in waiting[estimate]:  # which grows meanwhile
+            if here > distance[state]:
+                continue
+            wait(here, state, ways, n + 1)
+            _, first, cost, transition = ways[n]
+            rank = first if utility.unchanged(transition, cost) else utility.rank(transition)
+            following, there, onward = transition.next_state, here + rank, estimate - first + rank
+            if onward > widest:
+                continue
+            touched.append((onward, rank, transition))
+            if there < distance.get(following, FORBIDDEN):
+                distance[following] = there
+                if following.leg < last:
+                    wait(there, following, search.ways(following), 0)
+                else:
+                    goals.append(following)
+                    optimum = min(optimum, there)
+                    widest = optimum if limit is None else limit
     if optimum == FORBIDDEN:
         return None
-    return Corridor({step: rank for onward, rank, step in touched if onward <= widest}, distance, optimum)
+    ranks = {transition: rank for onward, rank, transition in touched if onward <= widest}
+    return Corridor(ranks, distance | dict.fromkeys(goals, optimum), optimum)
 
 
-def whole_map(search: Search, start: State) -> Corridor:
+def whole_map(domain: Domain, utility: Utility, start: State) -> Corridor:
     """Return all that can be driven from the start on, nothing left out, with no distances."""
     ranks, distance, ahead = dict[Transition, int](), {start: 0}, [start]
     while ahead:
-        for transition in search.successors(ahead.pop()):
-            rank = search.rank(transition)
+        for transition in domain.successors(ahead.pop()):
+            rank = utility.rank(transition)
             if rank < FORBIDDEN:
                 ranks[transition] = rank
                 if transition.next_state not in distance:

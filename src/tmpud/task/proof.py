@@ -81,7 +81,7 @@ class Prover:
         return self._written(program, domain, state, given)
 
     def _on_the_map(self, domain: Domain, search: Search, state: State) -> Proof:
-        given = whole_map(search, state)
+        given = whole_map(domain, search.utility, state)
         check_total(given.ranks)
         weights = {step: split(rank)[0] for step, rank in given.ranks.items()}
         return self._written(encoding() + facts(domain, state, weights), domain, state, given)

@@ -48,23 +48,24 @@ class Utility:
         self._penalties = _Penalties(preset)
 
     def terms(self, transition: Transition) -> Terms:
-        return Terms(*self._terms(transition))
+        cost, floor = self._cost[transition], self._floor.get(transition, -math.inf)
+        penalty, turns = self._penalties[self._safe[transition]], self._turns[transition.action]
+        return Terms(floor if floor > cost else cost, penalty, turns)
 
     def rank(self, transition: Transition) -> int:
         """Return the rank of a transition, FORBIDDEN where it cannot be driven."""
-        cost, safety, turns = self._terms(transition)
+        cost, safety, turns = self.terms(transition)
         if cost == math.inf:
             return FORBIDDEN
         return (centimetres(cost + safety + turns, transition) << 2 * FIELD) + STEP[transition.action]
 
-    def _terms(self, transition: Transition) -> tuple[float, float, float]:
-        cost, floor = self._cost[transition], self._floor.get(transition, -math.inf)
-        penalty, turns = self._penalties[self._safe[transition]], self._turns[transition.action]
-        return floor if floor > cost else cost, penalty, turns
+    def unchanged(self, transition: Transition, first: float) -> bool:
+        """Whether a transition's rank is still that of its first Cost, its floor [m], and Safe = 1."""
+        return self._cost[transition] <= first and self._safe[transition] == 1.0
 
     def total(self, plan: TaskPlan) -> Total:
         """Return what a whole plan costs."""
-        steps = tuple([self.terms(transition) for transition in plan])
+        steps = tuple(map(self.terms, plan))
         terms = Terms(*map(math.fsum, zip(*steps, strict=True))) if steps else Terms(0.0, 0.0, 0.0)
         return Total(terms, sum(map(centimetres, map(sum, steps), plan)), steps)
 
