@@ -24,7 +24,6 @@ class Way(NamedTuple):
 
     through: int  # rank of the best way to the goal that begins with it
     rank: int
-    cost: float  # [m]
     transition: Transition
 
 
@@ -122,7 +121,7 @@ def backward_tree(domain: Domain, preset: Preset, cost: Cost) -> Tree:
             rank = first.rank(transition)
             if rank < FORBIDDEN:
                 there = here + rank
-                ways.setdefault(transition.state, []).append(Way(there, rank, floor[transition], transition))
+                ways.setdefault(transition.state, []).append(Way(there, rank, transition))
                 if there < distance.get(transition.state, FORBIDDEN):
                     distance[transition.state] = there
                     heappush(queue, (there, transition.state))
@@ -155,8 +154,8 @@ def corridor(search: Search, start: State, limit: int | None = None) -> Corridor
             if here > distance[state]:
                 continue
             wait(here, state, ways, n + 1)
-            _, first, cost, transition = ways[n]
-            rank = first if utility.unchanged(transition, cost) else utility.rank(transition)
+            _, first, transition = ways[n]
+            rank = first if utility.unchanged(transition) else utility.rank(transition)
             following, there, onward = transition.next_state, here + rank, estimate - first + rank
             if onward > widest:
                 continue

@@ -59,9 +59,9 @@ class Utility:
             return FORBIDDEN
         return (centimetres(cost + safety + turns, transition) << 2 * FIELD) + STEP[transition.action]
 
-    def unchanged(self, transition: Transition, first: float) -> bool:
-        """Whether a transition's rank is still that of its first Cost, its floor [m], and Safe = 1."""
-        return self._cost[transition] <= first and self._safe[transition] == 1.0
+    def unchanged(self, transition: Transition) -> bool:
+        """Whether a transition's rank is what its floor and Safe = 1 make it."""
+        return self._cost[transition] <= self._floor.get(transition, -math.inf) and self._safe[transition] == 1.0
 
     def total(self, plan: TaskPlan) -> Total:
         """Return what a whole plan costs."""
