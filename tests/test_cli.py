@@ -291,6 +291,12 @@ def test_an_option_out_of_range_is_refused_without_a_traceback(tmpud: Tmpud, wor
     assert "Traceback" not in result.err
 
 
+def test_beta_is_refused_where_nothing_goes_by_it(tmpud: Tmpud) -> None:
+    result = tmpud("drive", *MISSION, "--beta", "0.5")
+    assert result.code == 2
+    assert "only --algorithm threshold accepts by it, not tmpud" in " ".join(result.err.split())
+
+
 def test_a_goal_that_cannot_be_reached_is_told_with_what_cuts_it_off(tmpud: Tmpud, crossing: str) -> None:
     result = tmpud("plan", "--map", crossing, "--from", "side_0", "--to", "north_0")
     assert (result.code, result.out) == (1, "")

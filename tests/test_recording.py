@@ -72,6 +72,15 @@ def test_nothing_made_of_an_earlier_run_stays_beside_a_new_log(tmp_path: Path) -
     assert sorted(file.name for file in folder.iterdir()) == sorted([LOG, "notes.txt"])
 
 
+def test_a_folder_of_other_files_is_left_as_it_is(tmp_path: Path) -> None:
+    folder = tmp_path / "atlas"
+    folder.mkdir()
+    (folder / PICTURE).write_text("somebody's map")
+    with pytest.raises(RequestError, match="atlas: there are other files and no run"):
+        list(record(iter(EVENTS), folder))
+    assert [(file.name, file.read_text()) for file in folder.iterdir()] == [(PICTURE, "somebody's map")]
+
+
 @pytest.mark.parametrize("name", ["Run", "run 1", "-run", ".run", "r" * 65, "ru\nn", "läuft", "..."])
 def test_a_bad_run_name_is_refused_before_anything_is_written(tmp_path: Path, name: str) -> None:
     with pytest.raises(RequestError, match="is no name for a run"):

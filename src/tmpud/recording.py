@@ -30,10 +30,13 @@ def run_name(words: str) -> str:
 def record(events: Iterator[Event], folder: Path) -> Iterator[Event]:
     """Write every event into a run folder while passing it on; what was written stays if the run breaks off.
 
-    Nothing is written, and no earlier run lost, where there is no first event.
+    Nothing is written, and no earlier run lost, where there is no first event. Raises RequestError for a folder that
+    holds something else than a run.
     """
     if not NAME.fullmatch(folder.name):
         raise RequestError(f"{folder.name!r} is no name for a run: small letters, digits, '.', '_' and '-', at most 64")
+    if folder.is_dir() and not (folder / LOG).exists() and any(folder.iterdir()):
+        raise RequestError(f"{folder}: there are other files and no run; a new or empty folder is needed")
     first = list(islice(events, 1))
     folder.mkdir(parents=True, exist_ok=True)
     for stale in (TIMING, PICTURE, REPLAY, COMPARISON):  # of an earlier run: they do not belong to this log

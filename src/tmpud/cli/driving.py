@@ -37,7 +37,7 @@ def drive(
     journey: Journey,
     where: Simulated,
     algorithm: Algorithm = "tmpud",
-    beta: Beta = 0.3,
+    beta: Beta = None,
     traffic: Traffic = 120,
     out: Out = None,
     frames: Annotated[bool, typer.Option(help="Record all traffic ten times a second, for the replay.")] = True,
@@ -51,6 +51,8 @@ def drive(
 
     if films and not frames:
         raise typer.BadParameter("an animation needs what --no-frames leaves out.", param_hint="'--no-frames'")
+    if beta is not None and algorithm != "threshold":
+        raise typer.BadParameter(f"only --algorithm threshold accepts by it, not {algorithm}.", param_hint="'--beta'")
     films.check()
 
     mission = Mission(
@@ -59,7 +61,7 @@ def drive(
         goal=journey.goal,
         via=tuple(journey.via or ()),
         algorithm=algorithm,
-        beta=beta,
+        **({} if beta is None else {"beta": beta}),
         traffic=traffic,
         seed=journey.seed,
         preset=journey.preset,

@@ -47,7 +47,10 @@ Algorithm = Annotated[
         help="tmpud weighs Safe against distance, threshold refuses actions below --beta, no-com ignores Safe."
     ),
 ]
-Beta = Annotated[float, typer.Option(min=0.0, max=1.0, callback=number, help="The least Safe that threshold accepts.")]
+Beta = Annotated[
+    float | None,
+    typer.Option(min=0.0, max=1.0, callback=number, help="The least Safe that threshold accepts.  [default: 0.3]"),
+]
 Missions = Annotated[str, typer.Option(help="paper, or random:N: N random missions over which the trials are spread.")]
 Jobs = Annotated[int, typer.Option(min=1, max=256, help="Worker processes; they never change a result.")]
 Folder = Annotated[
