@@ -12,7 +12,7 @@ import pytest
 from PIL import Image
 
 from tests.viewer.made_runs import recorded
-from tmpud.recording import REPLAY
+from tmpud.recording import LOG, REPLAY
 
 TMPUD = Path(sys.executable).parent / "tmpud"
 DRIVE = ("drive", "--from", "park1e_0", "--to", "park2e_0", "--traffic", "0", "--seed", "1")
@@ -33,6 +33,15 @@ def test_a_run_is_replayed_as_a_gif_and_nothing_else_is_written(tmp_path: Path) 
     with Image.open(tmp_path / "film.gif") as gif:
         assert (gif.format, gif.size) == ("GIF", (320, 200))
     assert not (folder / REPLAY).exists()
+
+
+def test_what_a_run_lacks_is_told_beside_its_gif(tmp_path: Path) -> None:
+    folder = recorded(tmp_path / "run")
+    log = (folder / LOG).read_bytes()
+    (folder / LOG).write_bytes(log[: len(log) - 20])
+    done = run("replay", folder, "--gif", tmp_path / "film.gif", "--to", "1", "--width", "320")
+    assert (done.returncode, done.stdout) == (0, "")
+    assert "missing: the run has no end" in done.stderr
 
 
 def test_a_drive_can_end_with_its_gif(tmp_path: Path) -> None:

@@ -65,12 +65,14 @@ class Cutting:
 
 
 def write_films(run: Intact, films: Films, cutting: Cutting) -> None:
-    """Write what was asked for, once it is checked; say on stderr what of the run is shown, and why that."""
+    """Write what was asked for, once it is checked; say on stderr what is missing, what is shown, and why that."""
     from tmpud.viewer.film.film import Film
     from tmpud.viewer.film.writing import write_gif, write_mp4
 
     film = Film(run, cutting.cut())
     clip = film.clip
+    for line in run.missing:
+        typer.echo(f"missing: {line}", err=True)
     typer.echo(f"showing {clip.begin:.1f} s to {clip.end:.1f} s of the drive: {clip.why}", err=True)
     for file, write in ((films.gif, write_gif), (films.mp4, write_mp4)):
         if file:
