@@ -5,18 +5,18 @@ from itertools import pairwise
 import pytest
 
 from tests.task.agreement import Case, random_case
-from tests.task.tiny_roads import driven, grid, request
+from tests.task.tiny_roads import driven, grid, link, network, request, road
 from tmpud.presets import TMPUD
 from tmpud.symbols import OptimisticSafe, State, Transition
 from tmpud.task.corridor import Search, backward_tree, corridor, whole_map
 from tmpud.task.domain import Domain
 from tmpud.task.facts import REDUCED, choices, encoding, facts, spelled
 from tmpud.task.solver import ask, ground, written
-from tmpud.task.utility import FORBIDDEN, Utility, most, split
+from tmpud.task.utility import FIELD, FORBIDDEN, Utility, most, split
 
 
 def search_of(case: Case, state: State) -> tuple[Domain, Search]:
-    """Return a search whose bounds were made before the weights changed."""
+    """Return a search on a tree that was made before the weights changed."""
     domain = Domain(case.network, case.request)
     tree = backward_tree(domain, case.preset, case.cost)
     case.change(state)
@@ -78,25 +78,77 @@ def test_stretches_hold_each_transition_once_and_leave_every_choice_between_them
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_the_kept_ways_are_lower_bounds_after_the_weights_changed(seed: int) -> None:
+def test_exits_are_sorted_and_stay_lower_bounds_after_the_weights_changed(seed: int) -> None:
     case = random_case(random.Random(seed))
     domain, search = search_of(case, State(case.request.start.segments[0], 0))
-    for state in (State(segment, leg) for segment in case.network.segments for leg in range(domain.last)):
-        ways = search.ways(state)
-        assert [way.through for way in ways] == sorted(way.through for way in ways)
-        through = {way.transition: way.through for way in ways}
-        for transition in domain.successors(state):
-            rank, onward = search.utility.rank(transition), bound(domain, search, transition.next_state)
-            assert through.get(transition, FORBIDDEN) <= rank + onward
+    bounds = dict.fromkeys(domain.goal_states(), 0)
+    for state in states_of(domain):
+        row = [way.through for way in search.out_of(state)]
+        assert row == sorted(row)
+        bounds[state] = min(row, default=FORBIDDEN)
+    for state in states_of(domain):
+        through = {way.transition: way.through for way in search.out_of(state)}
+        for step in domain.successors(state):
+            rank = search.utility.rank(step)
+            assert through.get(step, FORBIDDEN) <= rank + bounds.get(step.next_state, FORBIDDEN)
 
 
-def bound(domain: Domain, search: Search, state: State) -> int:
-    if domain.is_goal(state):
-        return 0
-    return min((way.through for way in search.ways(state)), default=FORBIDDEN)
+@pytest.mark.parametrize("seed", range(60))
+@pytest.mark.parametrize("more", [None, -1, 0, 1 << 2 * FIELD, 50_00 << 2 * FIELD])
+def test_the_corridor_is_what_its_definition_says(seed: int, more: int | None) -> None:
+    case = random_case(random.Random(seed))
+    start = State(case.request.start.segments[0], 0)
+    domain, search = search_of(case, start)
+    first = Utility(case.preset, case.first, OptimisticSafe(), {})
+    steps = [step for state in states_of(domain) for step in domain.successors(state)]
+    present = {step: search.utility.rank(step) for step in steps}
+    ahead = distances({start: 0}, [(step.state, present[step], step.next_state) for step in steps])
+    back = distances(
+        dict.fromkeys(domain.goal_states(), 0), [(step.next_state, first.rank(step), step.state) for step in steps]
+    )
+    optimum = min(ahead.get(goal, FORBIDDEN) for goal in domain.goal_states())
+    limit = None if more is None else optimum + more
+    found = corridor(search, start, limit)
+    if optimum >= FORBIDDEN or (limit is not None and limit < optimum):
+        assert found is None
+        return
+    assert found is not None
+    onward = {
+        step: ahead.get(step.state, FORBIDDEN) + rank + back.get(step.next_state, FORBIDDEN)
+        for step, rank in present.items()
+    }
+    widest = optimum if limit is None else limit
+    assert found.optimum == optimum
+    assert found.ranks == {step: present[step] for step, rank in onward.items() if rank <= widest}
+    for step in found.ranks:
+        assert found.distance[step.state] == ahead[step.state]
+        there = optimum if domain.is_goal(step.next_state) else ahead[step.next_state]
+        assert found.distance[step.next_state] == there
 
 
-def test_most_ways_are_never_weighed() -> None:
+def test_plans_that_became_equally_good_are_all_in_the_corridor() -> None:
+    links = [link("a_0", "b_0"), link("a_0", "c_0"), link("b_0", "g_0"), link("c_0", "g_0")]
+    domain = Domain(network([road(name) for name in "abcg"], links), request("a_0/0", "g_0/0"))
+    steps = [step for state in states_of(domain) for step in domain.successors(state)]
+    first = {step: 20.0 if step.state.segment == "b_0/0" else 10.0 for step in steps}
+    now = first | {step: 20.0 for step in steps if step.state.segment == "c_0/0"}
+    tree = backward_tree(domain, TMPUD, first)
+    utility = Utility(TMPUD, now, OptimisticSafe(), tree.floor)
+    found = corridor(Search(tree.out_of, utility, domain.last), domain.start_state())
+    assert found is not None
+    assert set(found.ranks) == set(steps)
+
+
+def test_a_start_that_is_a_goal_needs_no_transition() -> None:
+    domain = Domain(grid(2, random.Random(1)), request("0.0-E_0/0", "0.0-E_0/0"))
+    tree = backward_tree(domain, TMPUD, driven(domain.network))
+    search = Search(tree.out_of, Utility(TMPUD, {}, OptimisticSafe(), {}), domain.last)
+    found = corridor(search, domain.start_state())
+    assert found is not None
+    assert (found.ranks, found.optimum) == ({}, 0)
+
+
+def test_where_nothing_changed_only_the_corridor_is_weighed() -> None:
     roads = grid(6, random.Random(1))
     domain = Domain(roads, request("0.0-E_0/0", "5.5-W_1/1"))
     cost = driven(roads)
@@ -112,6 +164,21 @@ def test_most_ways_are_never_weighed() -> None:
     found = corridor(Search(tree.out_of, utility, domain.last), domain.start_state())
     assert found is not None
     assert weighed == Counter(list(found.ranks))
+
+
+def states_of(domain: Domain) -> list[State]:
+    return [State(segment, leg) for segment in domain.network.segments for leg in range(domain.last)]
+
+
+def distances(sources: dict[State, int], edges: list[tuple[State, int, State]]) -> dict[State, int]:
+    """Return the distances from the nearest source (Bellman-Ford)."""
+    found, changed = dict(sources), True
+    while changed:
+        changed = False
+        for one, rank, other in edges:
+            if one in found and rank < FORBIDDEN and found[one] + rank < found.get(other, FORBIDDEN):
+                found[other], changed = found[one] + rank, True
+    return found
 
 
 def test_the_corridor_of_a_town_is_a_small_part_of_it() -> None:

@@ -50,6 +50,15 @@ def test_a_cost_below_its_first_value_counts_as_that_value() -> None:
     assert utility.total((TURN, TURN)) == ((10.0, 0.0, 0.0), 10_00, ((5.0, 0.0, 0.0), (5.0, 0.0, 0.0)))
 
 
+@pytest.mark.parametrize(
+    ("cost", "safe", "unchanged"),
+    [(5.0, 1.0, True), (3.0, 1.0, True), (5.01, 1.0, False), (5.0, 0.999, False), (math.nan, 1.0, False)],
+)
+def test_a_rank_is_unchanged_where_no_weight_is_above_its_floor(cost: float, safe: float, unchanged: bool) -> None:
+    assert Utility(TMPUD, {TURN: cost}, {TURN: safe}, {TURN: 5.0}).unchanged(TURN) == unchanged
+    assert not Utility(TMPUD, {TURN: cost}, {TURN: safe}, {}).unchanged(TURN)
+
+
 def test_what_cannot_be_driven_is_forbidden() -> None:
     assert Utility(TMPUD, {TURN: math.inf}, OptimisticSafe(), {}).rank(TURN) == FORBIDDEN
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 from heapq import heappop, heappush
 
 from tmpud.symbols import State, TaskPlan, Transition
-from tmpud.task.corridor import Search, Way, corridor
+from tmpud.task.corridor import Exit, Search, corridor
 from tmpud.task.ties import Taste, taste, walk
 
 Ranked = tuple[int, tuple[Taste, ...], TaskPlan]  # two different plans never compare equal before the third item
@@ -39,14 +39,11 @@ def _branches(search: Search, plan: TaskPlan, plans: Sequence[TaskPlan]) -> Iter
 def _without(search: Search, taken: set[Transition], visited: set[State]) -> Search:
     """Return the same graph less some transitions and states."""
 
-    def ways(state: State) -> list[Way]:
-        return [
-            way
-            for way in search.ways(state)
-            if way.transition not in taken and way.transition.next_state not in visited
-        ]
+    def out_of(state: State) -> list[Exit]:
+        untaken = [way for way in search.out_of(state) if way.transition not in taken]
+        return [way for way in untaken if way.transition.next_state not in visited]
 
-    return replace(search, ways=ways)
+    return replace(search, out_of=out_of)
 
 
 def _best(search: Search, root: TaskPlan, start: State) -> Iterator[Ranked]:

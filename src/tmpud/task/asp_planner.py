@@ -92,7 +92,8 @@ class AspPlanner:
         As long as ``cost`` is the same mapping, a Cost that fell below its first value counts as that first value,
         unless the preset updates Cost to the current pose's.
         """
-        search, utility = self._search(state, request, cost, safe)
+        search = self._search(state, request, cost, safe)
+        utility = search.utility
         if state.leg == search.last:
             return report_of((), utility, optimal=True)
         domain, rules = self._memory[request].domain, self._prover.rules
@@ -111,9 +112,8 @@ class AspPlanner:
 
     def instance(self, state: State, request: ServiceRequest, cost: Cost, safe: Safe) -> str:
         """Return the facts that, with the package's .lp files, make plain ``clingo`` find the same optimum."""
-        search, utility = self._search(state, request, cost, safe)
-        domain = self._memory[request].domain
-        given = corridor(search, state) if self._prover.prune else whole_map(domain, utility, state)
+        search, domain = self._search(state, request, cost, safe), self._memory[request].domain
+        given = corridor(search, state) if self._prover.prune else whole_map(domain, search.utility, state)
         weights = {transition: split(rank)[0] for transition, rank in given.ranks.items()} if given else {}
         return facts(domain, state, weights)
 
@@ -124,16 +124,15 @@ class AspPlanner:
 
         A* finds them in the same graph and order as the planner's; the solver has not proved them.
         """
-        search, utility = self._search(state, request, cost, safe)
-        return tuple(report_of(plan, utility) for plan in best_plans(search, state, count + 1)[1:])
+        search = self._search(state, request, cost, safe)
+        return tuple(report_of(plan, search.utility) for plan in best_plans(search, state, count + 1)[1:])
 
-    def _search(self, state: State, request: ServiceRequest, cost: Cost, safe: Safe) -> tuple[Search, Utility]:
+    def _search(self, state: State, request: ServiceRequest, cost: Cost, safe: Safe) -> Search:
         """Return the graph to find a plan in, with the weights of this moment."""
         memory = self._recall(request, cost)
         memory.domain.check(state)
         utility = Utility(self.preset, cost, safe, memory.tree.floor)
-        search = Search(memory.tree.out_of, utility, memory.domain.last)
-        return search, utility
+        return Search(memory.tree.out_of, utility, memory.domain.last)
 
     def _recall(self, request: ServiceRequest, cost: Cost) -> _Memory:
         """Return what is kept of a request; the one place that decides whether the kept tree still holds."""

@@ -19,23 +19,23 @@ from tmpud.task.domain import Domain
 from tmpud.task.utility import FORBIDDEN, Utility, split
 
 
-class Way(NamedTuple):
-    """A transition, and what the first weights say of it."""
+class Exit(NamedTuple):
+    """A transition out of a state, and what the first weights say of it."""
 
-    through: int  # rank of the best way to the goal that begins with it
+    through: int  # rank of the best plan from the state on that begins with it
     rank: int
     transition: Transition
 
 
 @dataclass(frozen=True, slots=True)
 class Tree:
-    """The first weights, and the ways to the goal from every state under them."""
+    """The first weights, and how well every transition leads to the goal under them."""
 
     floor: dict[Transition, float]  # [m] the first Cost of each transition
-    ways: dict[State, list[Way]]  # those out of a state that lead to the goal, the best first
+    exits: dict[State, list[Exit]]  # those that lead to the goal, the best first
 
-    def out_of(self, state: State) -> Sequence[Way]:
-        return self.ways.get(state, ())
+    def out_of(self, state: State) -> Sequence[Exit]:
+        return self.exits.get(state, ())
 
     def bounds(self, cost: Cost) -> bool:
         """Whether no Cost is below its first value."""
@@ -44,9 +44,9 @@ class Tree:
 
 @dataclass(frozen=True, slots=True)
 class Search:
-    """A graph to find plans in, and its present weights."""
+    """A graph to find plans in, and its present weights, none of which is below the first one."""
 
-    ways: Callable[[State], Sequence[Way]]  # out of a state; their order and first weights are as in a Tree
+    out_of: Callable[[State], Sequence[Exit]]  # a Tree's, of which some may be left out
     utility: Utility
     last: int  # the leg of the goal states
 
@@ -104,9 +104,9 @@ class Corridor:
 
 
 def backward_tree(domain: Domain, preset: Preset, cost: Cost) -> Tree:
-    """Return the tree of best ways to the goal under Cost and Safe = 1 (Dijkstra)."""
+    """Return how well every transition leads to the goal under Cost and Safe = 1 (Dijkstra)."""
     floor: dict[Transition, float] = {}
-    ways: dict[State, list[Way]] = {}
+    exits: dict[State, list[Exit]] = {}
     first = Utility(preset, cost, OptimisticSafe(), floor)
     distance = dict.fromkeys(domain.goal_states(), 0)
     queue = [(0, state) for state in distance]
@@ -121,40 +121,41 @@ def backward_tree(domain: Domain, preset: Preset, cost: Cost) -> Tree:
             rank = first.rank(transition)
             if rank < FORBIDDEN:
                 there = here + rank
-                ways.setdefault(transition.state, []).append(Way(there, rank, transition))
+                exits.setdefault(transition.state, []).append(Exit(there, rank, transition))
                 if there < distance.get(transition.state, FORBIDDEN):
                     distance[transition.state] = there
                     heappush(queue, (there, transition.state))
-    for row in ways.values():
+    for row in exits.values():
         row.sort()
-    return Tree(floor, ways)
+    return Tree(floor, exits)
 
 
 def corridor(search: Search, start: State, limit: int | None = None) -> Corridor | None:
-    """Return the transitions t with distance + rank(t) + bound <= limit (A*); None where no plan exists.
+    """Return the transitions that lie on a way of at most this rank from the start to a goal; None where none does.
 
-    The limit is by default the rank of the best plan. Of a state's ways each waits for its turn, with what a plan over
-    it costs at least (partial expansion, Yoshizumi et al. 2000): most are never looked at.
+    A transition's way is the best one to it under the present weights, and from it on under the first ones. The limit
+    is by default the rank of the best plan, which A* finds. A state's exits wait for their turn one by one, with the
+    rank of their ways (Enhanced Partial Expansion A*, Goldenberg et al. 2014): most are never looked at.
     """
     utility, last = search.utility, search.last
     distance, goals, touched = {start: 0}, list[State](), list[tuple[int, int, Transition]]()
     optimum, widest = FORBIDDEN if start.leg < last else 0, FORBIDDEN - 1 if limit is None else limit
-    waiting, estimates = defaultdict[int, list[tuple[int, State, Sequence[Way], int]]](list), list[int]()
+    waiting, estimates = defaultdict[int, list[tuple[int, State, Sequence[Exit], int]]](list), list[int]()
 
-    def wait(here: int, state: State, ways: Sequence[Way], n: int) -> None:
-        if n < len(ways):
-            estimate = here + ways[n].through
+    def wait(here: int, state: State, exits: Sequence[Exit], n: int) -> None:
+        if n < len(exits):
+            estimate = here + exits[n].through
             if estimate not in waiting:
                 heappush(estimates, estimate)
-            waiting[estimate].append((here, state, ways, n))
+            waiting[estimate].append((here, state, exits, n))
 
-    wait(0, start, search.ways(start), 0)
+    wait(0, start, search.out_of(start), 0)
     while estimates and (estimate := heappop(estimates)) <= widest:
-        for here, state, ways, n in waiting[estimate]:  # which grows meanwhile
+        for here, state, exits, n in waiting[estimate]:  # exits as good as these join them, never better ones
             if here > distance[state]:
                 continue
-            wait(here, state, ways, n + 1)
-            _, first, transition = ways[n]
+            wait(here, state, exits, n + 1)
+            _, first, transition = exits[n]
             rank = first if utility.unchanged(transition) else utility.rank(transition)
             following, there, onward = transition.next_state, here + rank, estimate - first + rank
             if onward > widest:
@@ -163,7 +164,7 @@ def corridor(search: Search, start: State, limit: int | None = None) -> Corridor
             if there < distance.get(following, FORBIDDEN):
                 distance[following] = there
                 if following.leg < last:
-                    wait(there, following, search.ways(following), 0)
+                    wait(there, following, search.out_of(following), 0)
                 else:
                     goals.append(following)
                     optimum = min(optimum, there)

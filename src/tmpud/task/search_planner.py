@@ -22,13 +22,13 @@ class SearchPlanner(AspPlanner):
 
     def solve(self, state: State, request: ServiceRequest, cost: Cost, safe: Safe) -> PlanReport:
         """Return the best plan and its terms; raises NoPlanError or RequestError."""
-        search, utility = self._search(state, request, cost, safe)
+        search = self._search(state, request, cost, safe)
         if state.leg == search.last:
-            return report_of((), utility)
+            return report_of((), search.utility)
         found = corridor(search, state)
         if found is None:
             raise NoPlanError(f"no plan leads from {state.segment} to {request.goals[-1].name}")
-        return report_of(walk(state, found.optimal_transitions()), utility)
+        return report_of(walk(state, found.optimal_transitions()), search.utility)
 
     def prove(self, state: State, request: ServiceRequest, cost: Cost, safe: Safe) -> PlanReport:
         """Return clingo's plan under the same weights; raises as ``AspPlanner.solve`` does."""
