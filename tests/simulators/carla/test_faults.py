@@ -142,8 +142,7 @@ def test_a_client_killed_between_two_steps_is_tidied_after_when_the_drive_is_clo
 ABANDONED = """
 import os, signal, sys
 from tmpud.roads import load_map
-from tmpud.simulators.carla.messages import Message
-from tmpud.simulators.carla.session import Address, Session
+from tmpud.simulators.carla.session import Address
 from tmpud.simulators.carla.simulator import CarlaSimulator
 drive = CarlaSimulator(load_map(sys.argv[1]), traffic=4, seed=1, server=Address(port=int(sys.argv[2])), warm_up=0.0)
 drive.reset("a_0", 30.0)
