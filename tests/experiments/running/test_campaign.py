@@ -113,6 +113,13 @@ def test_a_worker_is_replaced_after_its_share_of_tasks(tmp_path: Path) -> None:
     assert set(Counter(record.result["run_in"] for record in records).values()) == {2}
 
 
+def test_many_tasks_that_start_from_the_same_are_dealt_out_to_all_workers(tmp_path: Path) -> None:
+    records = finish(tmp_path, [task(f"{n:02}", work="Where") for n in range(70)], jobs=3)
+    done_by = [records[f"{n:02}"].result["run_in"] for n in range(70)]
+    assert sorted(Counter(done_by).values()) == [23, 23, 24]
+    assert all(len({*done_by[n : n + 3]}) == 3 for n in range(68)), "those that stand together go to all"
+
+
 def test_a_process_with_threads_is_not_copied(tmp_path: Path) -> None:
     record = finish(tmp_path, [task("threads", work="Threaded")])["threads"]
     assert (record.status, "2 threads" in record.result["message"]) == (ERROR, True)

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import math
 import selectors
 import time
 from collections import Counter, deque
-from collections.abc import Generator, Iterable, Iterator, Sequence
+from collections.abc import Generator, Iterator, Sequence
 from dataclasses import dataclass
 from typing import IO, Any
 
@@ -15,6 +16,7 @@ from tmpud.experiments.running.workers import Limits, Worker
 
 ATTEMPTS = 2  # at a task that crashes or hangs
 FALSE_STARTS = 5  # workers in a row that end before they are ready
+TOGETHER = 20  # tasks that start from the same: not worth preparing twice for
 NOTICING = 1.0  # [s] for a worker whose socket is closed to end
 
 
@@ -26,21 +28,26 @@ class Finished:
     timing: Json
 
 
-def chunks(tasks: Iterable[Task], longest: int) -> Iterator[list[Task]]:
-    """Yield tasks that start from the same, in the order in which they are first met."""
+def chunks(tasks: Sequence[Task], limits: Limits) -> Iterator[list[Task]]:
+    """Yield tasks that start from the same; more of them than a worker's share are dealt out like cards.
+
+    So every worker has some to do, and some of the dear ones, which often stand together.
+    """
     groups: dict[str, list[Task]] = {}
     for task in tasks:
         groups.setdefault(digest([task.work, task.shared]), []).append(task)
+    share = max(TOGETHER, math.ceil(len(tasks) / limits.jobs))
+    longest = min(limits.recycle_after, share)
     for group in groups.values():
-        for first in range(0, len(group), longest):
-            yield group[first : first + longest]
+        parts = math.ceil(len(group) / longest)
+        yield from (group[first::parts] for first in range(parts))
 
 
 class Supervisor:
     """Does tasks on workers."""
 
-    def __init__(self, tasks: Iterable[Task], limits: Limits, log: IO[bytes]) -> None:
-        self._queue = deque(chunks(tasks, limits.recycle_after))
+    def __init__(self, tasks: Sequence[Task], limits: Limits, log: IO[bytes]) -> None:
+        self._queue = deque(chunks(tasks, limits))
         self._limits, self._log = limits, log
         self._workers: list[Worker] = []
         self._faults: Counter[str] = Counter()  # attempts at a task that crashed or hung
