@@ -14,6 +14,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.lines import Line2D
 from matplotlib.text import Annotation
 from matplotlib.transforms import Bbox
@@ -100,14 +101,14 @@ def draw(panels: Sequence[Panel], reference: Reference, name: str, caption: str)
     algorithms = list(dict.fromkeys(point.algorithm for panel in panels for point in panel.points))
     looks = styles(algorithms)
     with mpl.rc_context(LOOK):
-        figure = Figure(figsize=(max(3.4 * len(panels), 7.5), 4.2), layout="constrained")
+        figure = Figure(figsize=(max(3.4 * len(panels), 7.5), 4.2))
         FigureCanvasAgg(figure)
         drawn = figure.subplots(1, len(panels), squeeze=False)[0]
         labels = [_draw_panel(axes, panel, reference, looks) for axes, panel in zip(drawn, panels, strict=True)]
         drawn[0].set_ylabel("unsafe trials per 1,000")
         known = any(panel.title in reference for panel in panels)
         _legend(figure, {name: looks[name] for name in algorithms}, known)
-        figure.draw_without_rendering()
+        ConstrainedLayoutEngine().execute(figure)  # once: each drawing would lay it out anew
         for axes, panel, those in zip(drawn, panels, labels, strict=True):
             _spread(axes, panel, reference, those)
         svg, png = saved(figure)
