@@ -37,9 +37,9 @@ def _single(value: Any) -> Any:
 
 def _csv(rows: list[dict[str, Any]], file: Path) -> None:
     with file.open("w", encoding="utf-8", newline="") as out:
-        writer = csv.DictWriter(out, list(rows[0]) if rows else FIELDS)
-        writer.writeheader()
-        writer.writerows(rows)
+        writer = csv.writer(out)
+        writer.writerow(rows[0] if rows else FIELDS)
+        writer.writerows(row.values() for row in rows)
 
 
 def _json(rows: list[dict[str, Any]], file: Path) -> None:

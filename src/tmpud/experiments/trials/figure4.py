@@ -92,8 +92,9 @@ class Figure4:
     def _rows(self, task: Task, record: Record) -> Iterator[TrialRow]:
         condition, algorithm, _ = task.key.split("/")
         first, count = task.arguments["first"], task.arguments["count"]
+        told = {name: record.result[name] for name in PER_TRIAL if name in record.result}
         for i in range(count):
-            result = {name: values[i] for name, values in record.result.items() if name in PER_TRIAL}
+            result = {name: values[i] for name, values in told.items()}
             collisions, stops = result.get("collisions", 0), result.get("stops", 0)
             yield TrialRow(
                 condition=condition,
