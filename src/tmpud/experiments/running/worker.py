@@ -27,6 +27,7 @@ from tmpud.errors import SimulatorError, SimulatorHangError
 from tmpud.experiments.running.processes import die_with, ending, exit_code, fork, threads
 from tmpud.experiments.running.tasks import DONE, ERROR, SIM_CRASH, SIM_HANG, Json, NotingWork, Work, located
 
+GARBAGE = 10_000  # objects made, then the youngest are looked through: tasks make many and hardly any cycles
 ADDRESS = re.compile(r"0x[0-9a-f]+")  # of an object: another in each process
 Send = Callable[[Json], None]
 Run = Callable[[Work, Any, Json], Json]
@@ -37,6 +38,7 @@ def main() -> None:
     die_with(parent)
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the supervisor decides what an interrupt ends
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    gc.set_threshold(GARBAGE)
     with socket.socket(fileno=descriptor) as connection, connection.makefile("rb") as groups:
         send = partial(_send, connection)
         send({"ready": True})
