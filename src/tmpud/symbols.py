@@ -19,7 +19,7 @@ class Action(StrEnum):
 
     @property
     def is_merge(self) -> bool:
-        return self in (Action.MERGELEFT, Action.MERGERIGHT)
+        return self.startswith("merge")
 
 
 class State(NamedTuple):

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Generator
 from dataclasses import dataclass
+from functools import cache
 from hashlib import blake2b
 
 import numpy as np
@@ -94,6 +95,7 @@ _HERE = Trajectory(np.zeros(1), np.zeros((1, 3)), np.zeros(1))
 _NOBODY = np.ones((0, 1)), np.ones(0)  # o and o* of no vehicle
 
 
+@cache
 def _estimate(safe: float) -> SafetyEstimate:
     return SafetyEstimate(safe, None, safe, (), *_NOBODY, _HERE, _HERE.times)
 

@@ -6,12 +6,13 @@ import math
 from collections.abc import Generator
 
 from tmpud.errors import NoPlanError
-from tmpud.events import Estimated, Event, Planned, Refused
+from tmpud.events import Estimated, Event, Executed, Planned, Refused
 from tmpud.execution.knowledge import Knowledge
 from tmpud.execution.records import estimated
 from tmpud.presets import Preset
 from tmpud.protocols import PathLengths, TaskPlanner, World
 from tmpud.safety.estimator import SafetyEstimate
+from tmpud.scene import Outcome
 from tmpud.symbols import Action, ServiceRequest, State, TaskPlan, Transition
 from tmpud.task.domain import Domain
 from tmpud.task.utility import Utility, penalty
@@ -144,6 +145,10 @@ class Deliberation:
     def estimated(self, step: Transition, estimate: SafetyEstimate) -> Estimated:
         """Return the record of an estimate."""
         return estimated(self.world.time, step, estimate)
+
+    def executed(self, step: Transition, outcome: Outcome, estimated: bool) -> Executed:
+        """Return the record of an action that was driven."""
+        return Executed(self.world.time, step, outcome.value, estimated, self.world.distance)
 
     def replanned(self, step: Transition, safe: float, plan: TaskPlan, reason: str) -> Generator[Event, None, None]:
         """Yield the records of an action refused and of the plan that takes its place."""

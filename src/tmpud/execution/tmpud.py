@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator
 
-from tmpud.events import Event, Executed
+from tmpud.events import Event
 from tmpud.execution.deliberation import Deliberation
 from tmpud.scene import Outcome
 from tmpud.symbols import State, TaskPlan
@@ -36,7 +36,7 @@ def run_tmpud(start: State, mind: Deliberation, communicate: Communicate) -> Gen
             # Lines 9 to 14
             estimated = mind.world.is_estimated(step)
             outcome = yield from mind.world.execute(step, plan[1:])
-            yield Executed(mind.world.time, step, outcome.value, estimated, mind.world.distance)
+            yield mind.executed(step, outcome, estimated)
             if outcome is Outcome.INFEASIBLE:
                 plan = yield from mind.bar(step)
             elif outcome is not Outcome.DONE:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from tmpud.errors import NoPlanError
-from tmpud.events import Estimated, Event, Planned
+from tmpud.events import Estimated, Event, Executed, Planned
 from tmpud.execution.abstract import AbstractWorld, JointSample
 from tmpud.execution.baselines import communication
 from tmpud.execution.deliberation import Deliberation
@@ -88,7 +88,7 @@ class AbstractTrials:
 
 
 class _Silent(Deliberation):
-    """A mind whose plans and estimates nobody reads about: of an abstract trial only its end is kept."""
+    """A mind of whose drive nobody reads: of an abstract trial only its end is kept."""
 
     def planned(self, plan: TaskPlan, reason: str) -> Planned:  # noqa: ARG002
         return _A_PLAN
@@ -96,9 +96,14 @@ class _Silent(Deliberation):
     def estimated(self, step: Transition, estimate: SafetyEstimate) -> Estimated:  # noqa: ARG002
         return _AN_ESTIMATE
 
+    def executed(self, step: Transition, outcome: Outcome, estimated: bool) -> Executed:  # noqa: ARG002
+        return _AN_ACTION
 
+
+_NOWHERE = Transition(State("", 0), Action.FORWARD, State("", 0))
 _A_PLAN = Planned(0.0, 0, (), (), (), (), "")
-_AN_ESTIMATE = Estimated(0.0, Transition(State("", 0), Action.FORWARD, State("", 0)), 1.0, None, 1.0, (), (), ())
+_AN_ESTIMATE = Estimated(0.0, _NOWHERE, 1.0, None, 1.0, (), (), ())
+_AN_ACTION = Executed(0.0, _NOWHERE, Outcome.DONE.value, True, 0.0)
 
 
 def _way(network: RoadNetwork, preset: Preset, route: Sequence[str], seed: int) -> Way:
