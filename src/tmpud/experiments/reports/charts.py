@@ -151,7 +151,7 @@ def _draw_panel(axes: Axes, panel: Panel, reference: Reference, styles: dict[str
     axes.grid(color=GRID)
     axes.set_axisbelow(True)
     axes.spines[["top", "right"]].set_visible(False)
-    axes.margins(0.16)
+    axes.margins(0.28, 0.16)  # room for a label on either side
     for algorithm, cell in reference.get(panel.title, {}).items():
         axes.add_line(styles[algorithm].mark(PAPER, cell.distance, cell.per_1000)).set_zorder(2)
     shown = [point for point in panel.points if math.isfinite(point.distance[1]) and math.isfinite(point.unsafe[1])]
