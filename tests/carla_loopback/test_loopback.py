@@ -59,6 +59,7 @@ def free_port() -> int:
         return port
 
 
+@pytest.mark.flaky(reruns=1, only_rerun="TimeoutExpired")  # the client alone, which nobody wakes, hangs at times
 def test_the_real_client_and_its_traffic_manager_drive_120_cars(drive: tuple[dict[str, Any], dict[str, Any]]) -> None:
     seen, told = drive
     assert (seen["town"], seen["told"], seen["cars"]) == ("millbrook", 120, 120)
