@@ -19,15 +19,19 @@ class SumoRouter:
 
     def __init__(self, graph: Graph, file: Path) -> None:
         """Raise SkipError where routes and plans are not the same thing."""
-        lanes = graph.network.lanes
+        network, lanes = graph.network, graph.network.lanes
         self._speed = next(iter(lanes.values())).speed
-        if len(graph.network.edges) < len(lanes) or any(lane.speed != self._speed for lane in lanes.values()):
+        if len(network.edges) < len(lanes) or any(lane.speed != self._speed for lane in lanes.values()):
             raise SkipError("its routes are comparable where roads have one lane and one speed")
-        if len(graph.network.segments) > len(lanes):
+        if len(network.segments) > len(lanes):
             raise SkipError("its routes are comparable where each lane is one segment")
-        self._graph, self._lanes = graph, [segment.lane for segment in graph.network.segments.values()]
+        self._graph, self._lanes = graph, [segment.lane for segment in network.segments.values()]
         self._ends = list(graph.edges)
         self._libsumo = _started(file)
+        through = {lane for link in network.connections for lane in link.internal_lanes}
+        if any(self._libsumo.lane.getMaxSpeed(lane) != self._speed for lane in through):
+            close()
+            raise SkipError("its routes are comparable where turns are as quick as roads")
 
     def weigh(self, edge: int, weight: int) -> None:
         """Put what the transition costs more than at first on the way through the junction."""
