@@ -68,12 +68,13 @@ def figure4(
     running: Running,
 ) -> None:
     """Repeat the paper's figure in abstract simulation. Five algorithms under four road conditions."""
+    from tmpud.experiments.running.workers import Limits
     from tmpud.experiments.trials.figure4 import Figure4
     from tmpud.experiments.worlds.models import SHIPPED
 
     models = str(world) if world else SHIPPED
     asked = Figure4(**asdict(setting), trials=trials, batches=batches, seed=seed, world=models)
-    _experiment("figure4", asked.to_json(), asked.tasks(), running)
+    _experiment("figure4", asked.to_json(), asked.tasks(), running, Limits(jobs=running.jobs, together=1))
 
 
 @paper_app.command()
@@ -100,7 +101,8 @@ def calibration(
 
     options = {"merges": merges, "drives": drives, "first_seed": first_seed, "map": map_}
     tasks = calibration_tasks(merges, drives, first_seed, map_)
-    folder, results = run_tasks("calibration", options, tasks, running.out, Limits(jobs=running.jobs))
+    limits = Limits(jobs=running.jobs, together=1)
+    folder, results = run_tasks("calibration", options, tasks, running.out, limits)
     found, worlds = measured(results.records), checks(results.records, read_world())
     files = write_report(folder, calibration_report(found, worlds, results.manifest["command"], provenance(results)))
     if running.as_json:
@@ -125,7 +127,7 @@ def learn_world(
     from tmpud.experiments.worlds.learning import tasks, to_json, world
 
     options, runs = {"merges": merges, "seed": seed}, out.with_name(out.name + ".runs")
-    _, results = run_tasks("learn-world", options, tasks(merges, seed), runs, Limits(jobs=jobs))
+    _, results = run_tasks("learn-world", options, tasks(merges, seed), runs, Limits(jobs=jobs, together=1))
     command, time = results.manifest["command"], datetime.now(UTC).isoformat(timespec="seconds")
     learned = world(results.records, merges=merges, seed=seed, command=command, time=time)
     out.write_text(to_json(learned), encoding="utf-8")

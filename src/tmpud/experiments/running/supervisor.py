@@ -16,7 +16,6 @@ from tmpud.experiments.running.workers import Limits, Worker
 
 ATTEMPTS = 2  # at a task that crashes or hangs
 FALSE_STARTS = 5  # workers in a row that end before they are ready
-TOGETHER = 20  # tasks that start from the same: not worth preparing twice for
 NOTICING = 1.0  # [s] for a worker whose socket is closed to end
 
 
@@ -29,15 +28,14 @@ class Finished:
 
 
 def chunks(tasks: Sequence[Task], limits: Limits) -> Iterator[list[Task]]:
-    """Yield tasks that start from the same; more of them than a worker's share are dealt out like cards.
+    """Yield tasks that start from the same, in parts where they are many.
 
-    So every worker has some to do, and some of the dear ones, which often stand together.
+    They are dealt out like cards: those that take long often stand together, and every part has some of them.
     """
     groups: dict[str, list[Task]] = {}
     for task in tasks:
         groups.setdefault(digest([task.work, task.shared]), []).append(task)
-    share = max(TOGETHER, math.ceil(len(tasks) / limits.jobs))
-    longest = min(limits.recycle_after, share)
+    longest = min(limits.recycle_after, max(limits.together, math.ceil(len(tasks) / limits.jobs)))
     for group in groups.values():
         parts = math.ceil(len(group) / longest)
         yield from (group[first::parts] for first in range(parts))
@@ -70,9 +68,11 @@ class Supervisor:
     def _hand_out(self) -> None:
         """Replace workers that have done enough, and give those with nothing to do the next tasks."""
         for worker in [worker for worker in self._workers if not worker.tasks]:
-            if worker.done >= self._limits.recycle_after:
+            if not self._queue:
+                return
+            if worker.done and worker.done + len(self._queue[0]) > self._limits.recycle_after:
                 self._dismiss(worker)
-            elif self._queue:
+            else:
                 worker.give(self._queue.popleft())
         while self._queue and len(self._workers) < self._limits.jobs:
             worker = Worker(self._log, self._limits)
