@@ -74,7 +74,7 @@ def figure4(
 
     models = str(world) if world else SHIPPED
     asked = Figure4(**asdict(setting), trials=trials, batches=batches, seed=seed, world=models)
-    _experiment("figure4", asked.to_json(), asked.tasks(), running, Limits(jobs=running.jobs, together=1))
+    _experiment("figure4", asked.to_json(), asked.tasks(), running, Limits(jobs=running.jobs, together=False))
 
 
 @paper_app.command()
@@ -101,7 +101,7 @@ def calibration(
 
     options = {"merges": merges, "drives": drives, "first_seed": first_seed, "map": map_}
     tasks = calibration_tasks(merges, drives, first_seed, map_)
-    limits = Limits(jobs=running.jobs, together=1)
+    limits = Limits(jobs=running.jobs, together=False)
     folder, results = run_tasks("calibration", options, tasks, running.out, limits)
     found, worlds = measured(results.records), checks(results.records, read_world())
     files = write_report(folder, calibration_report(found, worlds, results.manifest["command"], provenance(results)))
@@ -127,7 +127,7 @@ def learn_world(
     from tmpud.experiments.worlds.learning import tasks, to_json, world
 
     options, runs = {"merges": merges, "seed": seed}, out.with_name(out.name + ".runs")
-    _, results = run_tasks("learn-world", options, tasks(merges, seed), runs, Limits(jobs=jobs, together=1))
+    _, results = run_tasks("learn-world", options, tasks(merges, seed), runs, Limits(jobs=jobs, together=False))
     command, time = results.manifest["command"], datetime.now(UTC).isoformat(timespec="seconds")
     learned = world(results.records, merges=merges, seed=seed, command=command, time=time)
     out.write_text(to_json(learned), encoding="utf-8")

@@ -12,12 +12,11 @@ from tmpud.experiments.running.workers import Limits
     [
         ([25, 25], Limits(jobs=4), [25, 25]),  # together, although two workers have nothing to do
         ([450], Limits(jobs=1), [150, 150, 150]),
-        ([20], Limits(jobs=8, together=20), [20]),
-        ([21], Limits(jobs=2, together=20), [11, 10]),
-        ([30, 30, 30], Limits(jobs=2, together=1), [30, 30, 30]),  # none is more than half of all
-        ([320], Limits(jobs=8, together=1), [40] * 8),
-        ([3], Limits(jobs=8, together=1), [1, 1, 1]),
-        ([320], Limits(jobs=2, together=1, recycle_after=100), [80] * 4),
+        ([21], Limits(jobs=2, together=False), [11, 10]),
+        ([30, 30, 30], Limits(jobs=2, together=False), [30, 30, 30]),  # none is more than half of all
+        ([320], Limits(jobs=8, together=False), [40] * 8),
+        ([3], Limits(jobs=8, together=False), [1, 1, 1]),
+        ([320], Limits(jobs=2, together=False, recycle_after=100), [80] * 4),
         ([], Limits(jobs=2), []),
     ],
 )

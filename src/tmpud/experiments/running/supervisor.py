@@ -35,7 +35,8 @@ def chunks(tasks: Sequence[Task], limits: Limits) -> Iterator[list[Task]]:
     groups: dict[str, list[Task]] = {}
     for task in tasks:
         groups.setdefault(digest([task.work, task.shared]), []).append(task)
-    longest = min(limits.recycle_after, max(limits.together, math.ceil(len(tasks) / limits.jobs)))
+    share = len(tasks) if limits.together else math.ceil(len(tasks) / limits.jobs)
+    longest = min(limits.recycle_after, share)
     for group in groups.values():
         parts = math.ceil(len(group) / longest)
         yield from (group[first::parts] for first in range(parts))
@@ -70,7 +71,7 @@ class Supervisor:
         for worker in [worker for worker in self._workers if not worker.tasks]:
             if not self._queue:
                 return
-            if worker.done and worker.done + len(self._queue[0]) > self._limits.recycle_after:
+            if worker.done + len(self._queue[0]) > self._limits.recycle_after:
                 self._dismiss(worker)
             else:
                 worker.give(self._queue.popleft())

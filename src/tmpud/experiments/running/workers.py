@@ -30,7 +30,7 @@ class Limits:
     task: float = 600.0  # [s] wall clock, then a task hangs
     prepare: float = 600.0  # [s] for what tasks share, and for a worker to start
     recycle_after: int = 200  # tasks, then a worker is replaced
-    together: int = 200  # tasks that start from the same: so many stay with one worker, whoever else has nothing to do
+    together: bool = True  # tasks that start from the same stay with one worker, whoever else has nothing to do
 
 
 class Worker:
