@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import gc
 import sys
 from typing import Annotated, NoReturn
 
@@ -12,7 +11,6 @@ import tmpud
 from tmpud.cli import carla, checking, driving, experiments, exporting, planning, viewing
 from tmpud.errors import TmpudError
 
-GARBAGE = 10_000  # objects made, then the youngest are looked through: commands make many and hardly any cycles
 INTERRUPTED = 130
 EXIT_CODES = {
     0: "done",
@@ -52,7 +50,6 @@ def common(
 
 def main() -> None:
     """Run the command line; a user's error is one line on stderr."""
-    gc.set_threshold(GARBAGE)
     debug = "--debug" in sys.argv
     if debug:
         sys.argv.remove("--debug")
